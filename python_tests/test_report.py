@@ -1,5 +1,6 @@
 """`report.html` in a real browser: it loads without an error, plays, and answers clicks with the numbers of the run."""
 
+import base64
 import csv
 import io
 import json
@@ -240,7 +241,8 @@ def test_bolts_supports_and_water_are_drawn(enmm, page, cases, tmp_path):
     def drawn() -> list[bool]:
         """Whether each bolt has its colour, #be125a, but for smoothing."""
         picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-        pixels = [picture.getpixel(tuple(round(part) for part in place(page, x, y))) for x, y in places]
+        # The pixel that holds the place: its neighbour may be smoothed.
+        pixels = [picture.getpixel(tuple(int(part) for part in place(page, x, y))) for x, y in places]
         return [max(abs(a - b) for a, b in zip(pixel, (190, 18, 90))) < 60 for pixel in pixels]
 
     assert all(drawn())
@@ -248,6 +250,65 @@ def test_bolts_supports_and_water_are_drawn(enmm, page, cases, tmp_path):
     page.painted()
     assert not any(drawn())
     quiet(page)
+
+
+@pytest.mark.parametrize("size", [(390, 800), (1440, 900)])
+def test_nothing_hides_the_slope_and_play_is_in_reach(program, results, tmp_path, size):
+    page = browser.Browser(program, tmp_path / "profile", size)
+    try:
+        page.open((results / "report.html").as_uri())
+        page.painted()
+        # Colours, their scale and zoom end above the slope; every control is whole within the width.
+        assert page.run("document.getElementById('bar').getBoundingClientRect().bottom"
+                        " <= document.getElementById('slope').getBoundingClientRect().top + 1")
+        assert page.run("document.documentElement.scrollWidth <= innerWidth")
+        cut = "[...document.querySelectorAll('button, select')].filter(e => e.offsetParent && !e.closest('dialog')"
+        cut += " && (e.getBoundingClientRect().right > innerWidth || e.scrollWidth > e.clientWidth + 1)).map(e => e.id)"
+        assert page.run(cut) == []
+        assert page.run("document.getElementById('play').getBoundingClientRect().bottom <= innerHeight")
+        quiet(page)
+    finally:
+        page.close()
+
+
+def test_a_question_mark_shows_the_keys(report):
+    report.press("?")
+    assert report.run("document.getElementById('keys').open")
+    assert "play or pause" in report.run("document.getElementById('keys').textContent")
+    report.press("Escape")
+    assert not report.run("document.getElementById('keys').open")
+    quiet(report)
+
+
+def test_a_link_leads_to_its_moment_and_colour(report, results):
+    middle = report.run("0.5 * (enmm.film.start + enmm.film.end)")
+    report.run(f"enmm.player.seek({middle})")
+    report.press("3")
+    report.run("enmm.copyLink()")
+    address = report.run("location.href")
+    report.call("Page.navigate", url="about:blank")
+    report.open(address)
+    assert report.run("enmm.player.time") == pytest.approx(middle, rel=1e-8)
+    assert report.run("enmm.colour.key") == "stress"
+    # A link that names no moment, or a wrong one, leaves the page at its end.
+    report.call("Page.navigate", url="about:blank")
+    report.open((results / "report.html").as_uri() + "#t=soon&colour=nonsense")
+    assert report.run("enmm.player.time === enmm.film.end")
+    assert report.errors == []
+
+
+def test_picture_and_table_hold_what_is_shown(report, results):
+    picture = report.run("enmm.picture().toDataURL('image/png').split(',')[1]")
+    picture = Image.open(io.BytesIO(base64.b64decode(picture))).convert("RGB")
+    width, height = report.run("[document.getElementById('slope').width, document.getElementById('slope').height]")
+    assert picture.size == (width, height + 44)
+    assert len(picture.getcolors(1 << 20)) > 20
+    table = list(csv.reader(io.StringIO(report.run("csvOf(enmm.film)"))))
+    rows = list(csv.reader((results / "history.csv").open()))
+    assert len(table) == len(rows) and len(table[0]) == len(rows[0])
+    for mine, theirs in zip(table[1:], rows[1:]):
+        assert all(close(float(a), float(b)) for a, b in zip(mine, theirs))
+    quiet(report)
 
 
 def test_a_hostile_title_stays_text(enmm, page, tmp_path, short_case):

@@ -20,7 +20,7 @@ const FLOORS: [&[&str]; 9] = [
     &["enmm-case", "enmm-handles", "enmm-lanes", "enmm-parts"],
     &["enmm"],
     &["enmm-implicit", "enmm-io", "enmm-observe", "enmm-stability", "enmm-ensemble"],
-    &["enmm-picture", "enmm-report", "enmm-capi"],
+    &["enmm-paper", "enmm-picture", "enmm-report", "enmm-capi"],
     &["enmm-run", "enmm-fmi"],
     &["enmm-bench"],
     &["enmm-verification", "enmm-fmi2", "enmm-fmi3"],

@@ -54,8 +54,9 @@ pub struct Case {
     /// Construction joints, along which later stages part the rock.
     #[serde(default, rename = "cut", skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<Cut>,
-    /// Where the section lies, for joint sets by dip direction.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Where the section lies: for joint sets by dip direction, pictures and the report.
+    // Not written: once joint sets have their angles, the model does not depend on it.
+    #[serde(default, skip_serializing)]
     pub section: Option<Section>,
     /// Rocks by name.
     #[serde(rename = "rock")]
@@ -127,6 +128,49 @@ pub struct Case {
     /// The samples of `enmm sample`.
     #[serde(default, skip_serializing)]
     pub ensemble: Ensemble,
+    /// Cover of the report of `enmm report`.
+    #[serde(default, skip_serializing)]
+    pub report: ReportNotes,
+}
+
+/// Project that the report of `enmm report` names; nothing of this acts on the model, or on what is stored of it.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ReportNotes {
+    /// Name of the project.
+    #[serde(default)]
+    pub project: Option<String>,
+    /// Who made the analysis: name and organisation.
+    #[serde(default)]
+    pub author: Option<String>,
+    /// Who ordered it.
+    #[serde(default)]
+    pub client: Option<String>,
+    /// Date of the report, as it is to be printed.
+    #[serde(default)]
+    pub date: Option<String>,
+    /// Number of the report or of its revision.
+    #[serde(default)]
+    pub number: Option<String>,
+    /// Text below these lines.
+    #[serde(default)]
+    pub remarks: Option<String>,
+}
+
+impl ReportNotes {
+    /// The keys and their values.
+    pub fn entries(&self) -> [(&'static str, Option<&str>); 6] {
+        let Self { project, author, client, date, number, remarks } = self;
+        [
+            ("project", project.as_deref()),
+            ("author", author.as_deref()),
+            ("client", client.as_deref()),
+            ("date", date.as_deref()),
+            ("number", number.as_deref()),
+            ("remarks", remarks.as_deref()),
+        ]
+    }
 }
 
 /// Whose the case is, as the description of an FMU says it; nothing of this acts on the model.
@@ -776,7 +820,8 @@ pub struct Output {
     /// Whether to write VTU frames.
     pub frames: bool,
     /// Which pictures to draw: `true` for the usual ones (`model`, `deformed`, `history`, and at the end of each stage
-    /// `displacement`, `joints`, `stress`), `false` for none, or a list of exactly those to draw.
+    /// `displacement_contours`, `joints`, `mean_stress_contours`), `false` for none, or a list of exactly those to
+    /// draw.
     pub pictures: Pictures,
 }
 

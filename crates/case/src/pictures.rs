@@ -14,8 +14,10 @@ pub enum PictureKind {
     Model,
     /// `deformed.png`: displacement at the end of the run.
     Deformed,
-    /// `history.png`: monitors and energies over time.
+    /// `history.png`: monitors, bolts and the motion of the base over the stages.
     History,
+    /// `energy.png`: energies over the stages.
+    Energy,
     /// `stage1_displacement.png` and so on: displacement since the start of the stage.
     Displacement,
     /// `stage1_joints.png`: joints that are open, slip or lock, and forces of bolts.
@@ -50,9 +52,9 @@ const USUAL: [PictureKind; 6] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
-    PictureKind::Displacement,
+    PictureKind::DisplacementContours,
     PictureKind::Joints,
-    PictureKind::Stress,
+    PictureKind::MeanStressContours,
 ];
 
 impl Pictures {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
-use enmm_run::{BoundFailure, Folder, bound_record, bracket_record, write_bound_page, write_bracket_page};
+use enmm_run::{BoundFailure, Folder, bound_record, bracket_record, write_bound, write_bound_page, write_bracket_page};
 use enmm_stability::limit_analysis::continuum::{Bracket, TRIANGLES};
 use enmm_stability::limit_analysis::{Bound, Collapse, Factor};
 use serde_json::Value;
@@ -20,7 +20,7 @@ use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,
-    /// Directory for report.html; default: NAME/bound, where NAME is that of the case file.
+    /// Directory for bound.json and report.html; default: NAME/bound, where NAME is that of the case file.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object.
@@ -90,8 +90,9 @@ pub fn bound(arguments: &Arguments) -> ExitCode {
     match found {
         Ok((loaded, _held, found)) => {
             print_line(&if json { found.record().to_string() } else { found.text() });
-            if let Err(error) = found.write_page(&directory, &loaded) {
-                return fail(&format!("cannot write the page ({error}): choose another directory with -o"), FAILED);
+            let written = write_bound(&directory, &loaded, &found.record());
+            if let Err(error) = written.and_then(|()| found.write_page(&directory, &loaded)) {
+                return fail(&format!("cannot write results ({error}): choose another directory with -o"), FAILED);
             }
             if !json {
                 print_line(&format!("{:<21} {}", "page to open", directory.join(PAGE).display()));

@@ -1,14 +1,16 @@
 //! `enmm fos`: finds the factor of safety of a case by strength reduction.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use enmm::model::BoltCondition;
 use enmm::model::case::Support;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::fos::{Found, remedy};
-use enmm_run::support::{BoltUse, bolt_uses};
+use enmm_run::summary::BoltRecord;
 use enmm_run::{FosError, FosOptions};
 use enmm_stability::left_out_stages;
 use enmm_stability::strength_reduction::{
@@ -236,18 +238,25 @@ fn chips(found: &Found) -> Option<String> {
         .then(|| format!("\n{:<20} slope {}; {}\n", "altogether", factor(found.main()), chips.join(", ")))
 }
 
-/// What the bolts carry, and by which convention.
+/// Greatest force of each bolt, and by which convention.
 fn bolts(reduction: &Reduction) -> Option<String> {
-    let uses = bolt_uses(&reduction.simulation);
-    let of = |bolt: &BoltUse| {
-        let share = bolt.utilisation().map_or_else(String::new, |share| format!(", {:.0} % of yield", 100.0 * share));
+    let all = BoltRecord::of(&reduction.simulation);
+    let there = all.iter().filter(|bolt| bolt.state != BoltCondition::Absent);
+    let mut most = BTreeMap::<u32, &BoltRecord>::new();
+    for bolt in there {
+        let greatest = most.entry(bolt.bolt).or_insert(bolt);
+        *greatest = if bolt.force > greatest.force { bolt } else { *greatest };
+    }
+    let of = |bolt: &&BoltRecord| {
+        let name = bolt.name.clone().unwrap_or_else(|| format!("bolt {}", bolt.bolt));
+        let share = bolt.utilisation.map_or_else(String::new, |share| format!(", {:.0} % of yield", 100.0 * share));
         let how = bolt.support.map_or("as the rock stretches it", |support| match support {
             Support::Active => "active, at its pretension",
             Support::Passive => "passive, at its yield force",
         });
-        format!("{} {:.1} kN{share} ({how})", bolt.name, bolt.force / 1e3)
+        format!("{name} {:.1} kN{share} ({how})", bolt.force / 1e3)
     };
-    (!uses.is_empty()).then(|| listed(uses.iter().map(of)))
+    (!most.is_empty()).then(|| listed(most.values().map(of)))
 }
 
 /// How much rock fails.

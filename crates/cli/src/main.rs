@@ -11,6 +11,7 @@ mod fos;
 mod new;
 mod output;
 mod progress;
+mod report;
 mod run;
 mod sample;
 mod verify;
@@ -68,6 +69,8 @@ enum Command {
     Draw,
     /// Bounds the factor of safety of a case by limit analysis of its blocks as rigid bodies.
     Bound(bound::Arguments),
+    /// Writes a report of results for paper: report_a4.html and, by a browser, report_a4.pdf.
+    Report(report::Arguments),
     /// Shows a run in a browser while it goes on.
     View(view::Arguments),
     /// Times standard models: milliseconds per step and stage, rates, memory, limits of the machine.
@@ -97,6 +100,7 @@ fn execute(command: Command) -> ExitCode {
         Command::Sample(arguments) => sample::sample(&arguments),
         Command::Draw => draw::draw(),
         Command::Bound(arguments) => bound::bound(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),

@@ -42,7 +42,10 @@ fn a_search_for_tables_alone_removes_the_drawings_of_the_search_before() {
         assert_eq!(place.enmm(words).status, Some(0));
         place.names_in("out")
     };
-    assert_eq!(left(&search), ["failure.png", "fos.csv", "fos.json", "fos.png", "report.html"]);
+    assert_eq!(
+        left(&search),
+        ["failure.png", "failure.svg", "fos.csv", "fos.json", "fos.png", "fos.svg", "report.html"]
+    );
     assert_eq!(left(&[&search[..], &["--no-pictures"]].concat()), ["fos.csv", "fos.json"]);
 }
 
@@ -157,7 +160,7 @@ fn bolts_are_an_active_or_a_passive_support_as_the_case_says() {
             if command == "fos" {
                 assert_eq!(found["bolts"].as_array().map(Vec::len), Some(3), "{found}");
                 assert_eq!(found["bolts"][0]["support"], support);
-                let of_yield = found["bolts"][0]["force"].as_f64().expect("a force") / 250e3;
+                let of_yield = found["bolts"][0]["utilisation"].as_f64().expect("a share");
                 assert!((of_yield - share).abs() < 0.01, "{of_yield}");
             }
         }

@@ -12,6 +12,7 @@ mod issue_two_runs_wrote_into_one_folder;
 mod new;
 mod output;
 mod pictures;
+mod report;
 mod resume;
 mod run;
 mod sample;

@@ -30,8 +30,9 @@ fn a_run_draws_the_usual_pictures_at_the_end_of_each_stage() {
     assert_eq!(place.enmm(&["run", "case.toml"]).status, Some(0));
     let stages = ["stage1", "stage2"];
     let mut expected: Vec<String> = ["deformed", "history", "model"].map(|name| format!("{name}.png")).to_vec();
-    expected
-        .extend(stages.iter().flat_map(|s| ["displacement", "joints", "stress"].map(|name| format!("{s}_{name}.png"))));
+    expected.extend(stages.iter().flat_map(|s| {
+        ["displacement_contours", "joints", "mean_stress_contours"].map(|name| format!("{s}_{name}.png"))
+    }));
     assert_eq!(names(&place.path("case")), expected);
 }
 

@@ -41,6 +41,13 @@ pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// Standard deviation of a sample, by n − 1; not a number with fewer than two values.
+pub fn standard_deviation(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    let sum: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
+    (sum / (values.len() as f64 - 1.0)).sqrt()
+}
+
 /// The value below which the share `p` of the values is, linear between two of them; not a number without values.
 pub fn quantile(values: &[f64], p: f64) -> f64 {
     let mut sorted = values.to_vec();

@@ -22,8 +22,8 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, cut, \
          domain, ensemble, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, \
-         law_region, load, mesh, monitor, output, port, quiet, random, random_correlation, rock, section, solver, \
-         stage, title, water; rename or remove it",
+         law_region, load, mesh, monitor, output, port, quiet, random, random_correlation, report, rock, \
+         section, solver, stage, title, water; rename or remove it",
     );
 }
 
@@ -70,7 +70,7 @@ fn wrong_type_says_expected_and_found() {
 /// A key that may be of two types names both, and the words that a list may have.
 #[test]
 fn wrong_type_names_all_types_and_words() {
-    let kinds = "model, deformed, history, displacement, joints, joint_stress, stress, velocity, covers, \
+    let kinds = "model, deformed, history, energy, displacement, joints, joint_stress, stress, velocity, covers, \
                  displacement_contours, mean_stress_contours";
     for (value, shown) in [("3", "the integer 3"), ("\"model\"", "the string \"model\"")] {
         assert_refused(

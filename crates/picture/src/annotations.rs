@@ -3,11 +3,11 @@
 use enmm::geometry::ends::EndChange;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm::model::case::{Anchorage, Axes, Load, LoadKind, Port};
+use enmm::model::case::{Anchorage, Axes, JointLaw, JointLawKind, Load, LoadKind, Port, Rock};
 use enmm::model::tables::EdgeId;
 use enmm_observe::{SupportKind, bolts, supports, water_surface};
 
-use crate::axes::{number_text, si_text};
+use crate::axes::{number_text, si_text, three_digits};
 use crate::signs::Held;
 use crate::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
@@ -36,11 +36,10 @@ pub fn model_annotations(simulation: &Simulation) -> ModelAnnotations {
         ports: ports.collect(),
         loads: case.loads.iter().filter_map(load_mark).chain(port_loads).collect(),
         facts: facts(simulation),
-        counts: vec![
-            counted(covers.block_count(), "block"),
-            counted(covers.element_count(), "element"),
-            format!("mesh size {} m", covers.mesh.size),
-        ],
+        section: section(simulation),
+        rock_values: case.rocks.values().map(rock_values).collect(),
+        law_values: case.joint_laws.values().map(law_values).collect(),
+        counts: vec![counted(covers.block_count(), "block")],
         bolts: bolt_marks(simulation),
         trace_segments: joints.collect(),
         sets: sets(simulation),
@@ -174,6 +173,57 @@ fn load_of_port(port: &Port) -> Option<LoadMark> {
     }
 }
 
+/// A number in three digits, without zeros at its end.
+fn short(value: f64) -> String {
+    number_text(format!("{value:.2e}").parse().unwrap_or(value))
+}
+
+/// Direction of the section, in words; empty without one.
+fn section(simulation: &Simulation) -> String {
+    let azimuth = simulation.case().section.map(|section| section.azimuth_deg.rem_euclid(360.0));
+    azimuth.map_or(String::new(), |azimuth| format!("section with its x axis towards azimuth {azimuth:03.0}°"))
+}
+
+/// Density, elasticity and strength of a rock.
+fn rock_values(rock: &Rock) -> String {
+    let mut values = vec![format!("{} kg/m³", rock.density), format!("E {}", si_text(rock.young, "Pa"))];
+    values.extend(rock.friction_deg.map(|friction| format!("φ {}°", number_text(friction))));
+    values.extend(rock.cohesion.map(|cohesion| format!("c {}", si_text(cohesion, "Pa"))));
+    values.extend(rock.tension.map(|tension| format!("t {}", si_text(tension, "Pa"))));
+    values.join(", ")
+}
+
+/// Strength of a joint law, and that after failure where it is another.
+fn law_values(law: &JointLaw) -> String {
+    let pascals = |name: &str, value: f64| (value != 0.0).then(|| format!("{name} {}", si_text(value, "Pa")));
+    let angle = |name: &str, value: f64| format!("{name} {}°", number_text(value));
+    if law.kind == JointLawKind::BartonBandis {
+        let jrc = law.jrc.map(|jrc| format!("JRC {}", number_text(jrc)));
+        let jcs = law.jcs.and_then(|jcs| pascals("JCS", jcs));
+        return std::iter::once(angle("φr", law.friction_deg)).chain(jrc).chain(jcs).collect::<Vec<_>>().join(", ");
+    }
+    let peak = [Some(angle("φ", law.friction_deg)), pascals("c", law.cohesion), pascals("t", law.tension)];
+    let friction = law.residual_friction_deg.filter(|friction| *friction != law.friction_deg);
+    let cohesion = law.residual_cohesion.filter(|cohesion| *cohesion != law.cohesion);
+    let cohesion = cohesion.map(|cohesion| format!("c {}", si_text(cohesion, "Pa")));
+    let residual: Vec<String> = friction.map(|friction| angle("φ", friction)).into_iter().chain(cohesion).collect();
+    let residual = if residual.is_empty() { String::new() } else { format!("; residual {}", residual.join(", ")) };
+    peak.into_iter().flatten().collect::<Vec<_>>().join(", ") + &residual
+}
+
+/// An angle counter-clockwise from the x axis (degrees) with its scatter, as a dip to a side: `20 ± 2° right`.
+fn dip(angle: f64, scatter: &str) -> String {
+    let angle = angle - 180.0 * ((angle - 90.0) / 180.0).ceil();
+    let side = if !(0.05..89.95).contains(&angle.abs()) {
+        ""
+    } else if angle < 0.0 {
+        " right"
+    } else {
+        " left"
+    };
+    format!("dip {}{scatter}°{side}", short(angle.abs()))
+}
+
 /// Actions on all rock, in words.
 fn facts(simulation: &Simulation) -> Vec<String> {
     let case = simulation.case();
@@ -184,7 +234,13 @@ fn facts(simulation: &Simulation) -> Vec<String> {
     facts.extend(case.base_motions.iter().map(|motion| format!("base moves along {:?}", motion.axis).to_lowercase()));
     let waves = case.quiets.iter().filter_map(|quiet| quiet.wave);
     facts.extend(waves.map(|[x, y]| format!("wave ({}, {}) m/s comes in", number_text(x), number_text(y))));
-    facts.extend(case.in_situ.iter().map(|_| "in-situ stress".to_owned()));
+    facts.extend(case.in_situ.iter().map(|stress| {
+        let [xx, yy, _] = stress.gradient;
+        let by_weight = yy != 0.0 && [stress.sxx, stress.syy] == [Some(0.0); 2];
+        let ratio =
+            if by_weight { format!(", horizontal {} of vertical", three_digits(xx / yy)) } else { String::new() };
+        format!("in-situ stress{ratio}")
+    }));
     facts
 }
 
@@ -226,11 +282,7 @@ fn sets(simulation: &Simulation) -> Vec<SetMark> {
         let scatter = if set.dip_sd_deg > 0.0 { format!(" ± {}", number_text(set.dip_sd_deg)) } else { String::new() };
         SetMark {
             name: set.name.clone().unwrap_or_else(|| format!("set {}", k + 1)),
-            detail: format!(
-                "{}{scatter}°, every {} m",
-                number_text(set.angle().to_degrees()),
-                number_text(set.spacing)
-            ),
+            detail: format!("{}, every {} m", dip(set.angle().to_degrees(), &scatter), short(set.spacing)),
             direction,
             place: middles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied(),
         }

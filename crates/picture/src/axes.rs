@@ -5,9 +5,9 @@ use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle, text_width};
 use enmm::geometry::{Point, Vector};
 
 /// Size (px) of numbers on axes.
-pub const TICK_SIZE: f64 = 15.0;
+pub const TICK_SIZE: f64 = 17.0;
 /// Size (px) of axis titles, legends and notes.
-pub const LABEL_SIZE: f64 = 16.0;
+pub const LABEL_SIZE: f64 = 19.0;
 /// Length (px) of a tick.
 const TICK_LENGTH: f64 = 6.0;
 /// Distance (px) of the ticks that are aimed at, along x and y.
@@ -129,7 +129,7 @@ impl View {
             sheet.text([x, bottom + TICK_LENGTH + TICK_SIZE], &ticks.label(value), style);
         }
         let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
-        sheet.text([self.area.left + 0.5 * self.area.width, bottom + 45.0], "x [m]", style);
+        sheet.text([self.area.left + 0.5 * self.area.width, bottom + 48.0], "x [m]", style);
     }
 
     fn draw_vertical_axis(&self, sheet: &mut Sheet) {
@@ -208,6 +208,21 @@ pub fn number_text(value: f64) -> String {
         return with_minus(format!("{mantissa} × 10{}", superscript(exponent)));
     }
     with_minus(trimmed(format!("{value:.*}", (3 - exponent).max(0) as usize)))
+}
+
+/// A number in three digits, for readers: `94.6`, `1.44`, `2510`.
+pub fn three_digits(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !value.is_finite() {
+        return number_text(value);
+    }
+    // Rounding first keeps 9.996 from becoming 10.00.
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    let exponent = libm::log10(rounded.abs() * (1.0 + 1e-12)).floor() as i32;
+    if !(-4..7).contains(&exponent) {
+        return number_text(rounded);
+    }
+    with_minus(format!("{rounded:.*}", (2 - exponent).max(0) as usize))
 }
 
 /// A value in three digits with the prefix in which it reads well: `1.25 MPa`.

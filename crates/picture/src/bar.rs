@@ -5,7 +5,7 @@ use super::colour::{Colour, GREY, INK, SCALE_STEPS, scale};
 use super::sheet::{Anchor, Rect, Sheet, Style, TextStyle};
 
 /// Room (px) at the right of a frame for the bar.
-pub const BAR_ROOM: f64 = 180.0;
+pub const BAR_ROOM: f64 = 190.0;
 
 /// Draws the bar of contours: a colour for each band, and a label between neighbours.
 pub fn draw_bands(sheet: &mut Sheet, frame: &Rect, title: &str, colours: &[Colour], labels: &[String]) {
@@ -34,5 +34,5 @@ fn draw_steps(sheet: &mut Sheet, frame: &Rect, title: &str, colours: &[Colour], 
         sheet.text([bar.right() + 10.0, y + 0.36 * TICK_SIZE], label, TextStyle::new(TICK_SIZE));
     }
     let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY).upward();
-    sheet.text([bar.right() + 74.0, bar.top + 0.5 * bar.height], title, style);
+    sheet.text([bar.right() + 86.0, bar.top + 0.5 * bar.height], title, style);
 }

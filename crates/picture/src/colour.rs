@@ -15,6 +15,9 @@ pub const PALE: Colour = Colour(214, 218, 222);
 /// Marks that must be found at once.
 pub const ACCENT: Colour = Colour(190, 18, 90);
 
+/// Parts of a chart that have no scale.
+pub const BAND: Colour = Colour(243, 244, 246);
+
 /// Water.
 pub const WATER: Colour = Colour(0, 158, 224);
 /// Water outside the rock.
@@ -36,6 +39,18 @@ pub const BLOCKS: [Colour; 8] = [
     Colour(244, 238, 198),
     Colour(205, 234, 231),
     Colour(229, 220, 208),
+];
+
+/// Soft fills of rocks; neighbours in the list differ in grey too.
+pub const ROCKS: [Colour; 8] = [
+    Colour(240, 230, 208),
+    Colour(180, 196, 206),
+    Colour(224, 206, 178),
+    Colour(168, 184, 160),
+    Colour(236, 226, 238),
+    Colour(192, 172, 160),
+    Colour(214, 226, 206),
+    Colour(166, 166, 184),
 ];
 
 /// Dark lines: joint laws and series.

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::Picture;
-use super::axes::{Ticks, View, is_drawable, number_text, si_text};
+use super::axes::{Ticks, View, is_drawable, number_text, si_text, three_digits};
 use super::bar::{BAR_ROOM, draw_bands};
 use super::colour::{Colour, INK, SCALE_STEPS, scale};
 use super::sheet::{Path, Pixel, Style};
@@ -38,7 +38,7 @@ pub fn displacement_contours(stage: &StageEnd, since: &[Vector]) -> Picture {
         round_levels([0.0, largest], size)
     };
     let scale = if logarithmic { "; logarithmic levels" } else { "" };
-    let note = format!("largest displacement {} {unit}{scale}; slope true to scale", number_text(largest / size));
+    let note = format!("largest displacement {} {unit}{scale}; slope true to scale", three_digits(largest / size));
     let title = format!("displacement [{unit}]");
     draw(
         stage,

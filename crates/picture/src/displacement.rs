@@ -1,7 +1,7 @@
 //! The deformed slope coloured by the size of its displacement.
 
 use super::Picture;
-use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, round_above};
+use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, round_above, three_digits};
 use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{ACCENT, GREY, INK, SCALE_STEPS, scale, scale_step};
 use super::sheet::{Rect, Sheet, Style, TextStyle, text_width};
@@ -140,7 +140,7 @@ fn draw_notes(sheet: &mut Sheet, view: &View, field: &Field, factor: f64) {
     sheet.text([x + 60.0, y], "outline before", style);
     x += 60.0 + text_width("outline before", LABEL_SIZE) + 50.0;
     let (unit, size) = field.unit();
-    let largest = format!("largest displacement {} {unit}", number_text(field.largest_at_point / size));
+    let largest = format!("largest displacement {} {unit}", three_digits(field.largest_at_point / size));
     sheet.text([x, y], &largest, style);
     x += text_width(&largest, LABEL_SIZE) + 50.0;
     let deformation = if factor > 1.0 {

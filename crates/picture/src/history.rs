@@ -1,14 +1,18 @@
-//! Histories as small multiples: one frame per quantity, a common time axis with the stages.
+//! Histories as small multiples: one frame per quantity, a common axis with the stages.
+//!
+//! Dynamic stages share the axis by their true time; static stages, whose time is a path and no physics, have bands of
+//! equal width without numbers.
 
 use super::Picture;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
-use super::colour::{Colour, GREY, INK, LINES};
+use super::colour::{BAND, Colour, GREY, INK, LINES};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
+use super::stage_axis::{FARTHEST, NAME_ROW, StageAxis, StageStart};
 
 /// Room (px) at the right of the frames for legends.
 const LEGEND_ROOM: f64 = 300.0;
-/// Top of the first frame (px).
+/// Top of the first frame (px) below a title without names of stages.
 const FRAME_TOP: f64 = 80.0;
 /// Distance (px) of the frames.
 const BETWEEN: f64 = 26.0;
@@ -19,8 +23,6 @@ const LOWEST: f64 = 170.0;
 const HIGHEST: f64 = 520.0;
 /// Distance (px) of value ticks that is aimed at.
 const TICK_DISTANCE: f64 = 36.0;
-/// Values beyond this are taken for numerical failures and left out.
-const FARTHEST: f64 = 1e300;
 
 /// A quantity over time.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -35,40 +37,34 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Where a stage begins on the time axis.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct StageStart {
-    /// Name of the stage.
-    pub name: String,
-    /// Its first time (s).
-    pub time: f64,
-}
-
-/// Draws series over time, those of one quantity in one frame; a broken line and a name mark each of several stages.
+/// Draws series over the stages, those of one quantity in one frame; a broken line and a name mark each of several
+/// stages. Without stages all times are true.
 pub fn history_picture(title: &str, series: &[Series], stages: &[StageStart]) -> Picture {
     let groups = by_quantity(series);
     let count = groups.len().max(1) as f64;
     let height = ((SHARED_HEIGHT - BETWEEN * (count - 1.0)) / count).clamp(LOWEST, HIGHEST);
-    let mut sheet = Sheet::new(WIDTH, FRAME_TOP + count * (height + BETWEEN) + BELOW_FRAME);
-    draw_title(&mut sheet, title, "");
     let times = Range::of(series.iter().flat_map(drawable).map(|(time, _)| time));
     let width = WIDTH - LEFT - LEGEND_ROOM;
+    let axis = times.map(|times| StageAxis::new([times.min, times.max], stages, LEFT, width));
+    let frame_top = FRAME_TOP + NAME_ROW * axis.as_ref().map_or(0, StageAxis::name_rows) as f64;
+    let mut sheet = Sheet::new(WIDTH, frame_top + count * (height + BETWEEN) + BELOW_FRAME);
+    draw_title(&mut sheet, title, "");
     let frame = |k: usize| {
-        let top = FRAME_TOP + k as f64 * (height + BETWEEN);
+        let top = frame_top + k as f64 * (height + BETWEEN);
         Rect { left: LEFT, top, width, height }
     };
     for (k, group) in groups.iter().enumerate() {
         let values = Range::of(group.iter().flat_map(|series| drawable(series)).map(|(_, value)| value));
-        let chart = Chart { frame: frame(k), times, values: values.map(Range::with_margin) };
-        chart.draw(&mut sheet, group);
-        if let Some(times) = times.filter(|_| stages.len() > 1) {
-            chart.draw_stages(&mut sheet, times, stages, k == 0);
-        }
+        Chart { frame: frame(k), axis: axis.as_ref(), values: values.map(Range::with_margin) }.draw(&mut sheet, group);
     }
     if groups.is_empty() {
-        Chart { frame: frame(0), times: None, values: None }.draw(&mut sheet, &[]);
+        Chart { frame: frame(0), axis: None, values: None }.draw(&mut sheet, &[]);
     }
-    draw_time_title(&mut sheet, &frame(groups.len().max(1) - 1));
+    if let Some(axis) = &axis {
+        axis.draw_names(&mut sheet, frame_top);
+    }
+    let title = axis.as_ref().map_or("time [s]", StageAxis::title);
+    draw_time_title(&mut sheet, &frame(groups.len().max(1) - 1), title);
     sheet.finish()
 }
 
@@ -88,9 +84,9 @@ fn is_alike(a: &Series, b: &Series) -> bool {
     a.unit == b.unit && a.quantity == b.quantity
 }
 
-fn draw_time_title(sheet: &mut Sheet, last: &Rect) {
+fn draw_time_title(sheet: &mut Sheet, last: &Rect, title: &str) {
     let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
-    sheet.text([last.left + 0.5 * last.width, last.bottom() + 45.0], "time [s]", style);
+    sheet.text([last.left + 0.5 * last.width, last.bottom() + 45.0], title, style);
 }
 
 fn is_drawable((time, value): (f64, f64)) -> bool {
@@ -139,20 +135,26 @@ impl Range {
 }
 
 /// A frame with its scales; without data it has none.
-struct Chart {
+struct Chart<'a> {
     frame: Rect,
-    times: Option<Range>,
+    axis: Option<&'a StageAxis>,
     values: Option<Range>,
 }
 
-impl Chart {
+impl Chart<'_> {
     fn draw(&self, sheet: &mut Sheet, group: &[&Series]) {
         let [quantity, unit] = group.first().map_or(["", ""], |series| [&series.quantity, &series.unit]);
-        match (self.times, self.values) {
-            (Some(times), Some(values)) => {
-                self.draw_time_ticks(sheet, times);
+        match (self.axis, self.values) {
+            (Some(axis), Some(values)) => {
+                axis.bands().for_each(|[left, width]| {
+                    sheet.rect(&Rect { left, width, ..self.frame }, Style::fill(BAND).crisp());
+                });
+                self.draw_time_ticks(sheet, axis);
                 self.draw_value_ticks(sheet, values, quantity, unit);
-                sheet.clipped(&self.frame, |sheet| self.draw_lines(sheet, group, times, values));
+                for x in axis.borders() {
+                    sheet.line([x, self.frame.top], [x, self.frame.bottom()], Style::line(GREY, 1.4).dashed());
+                }
+                sheet.clipped(&self.frame, |sheet| self.draw_lines(sheet, group, axis, values));
             }
             _ => {
                 let middle = [self.frame.left + 0.5 * self.frame.width, self.frame.top + 0.5 * self.frame.height];
@@ -164,18 +166,19 @@ impl Chart {
         self.draw_legend(sheet, group);
     }
 
-    fn pixel(&self, times: Range, values: Range, (time, value): (f64, f64)) -> Pixel {
-        let x = self.frame.left + times.fraction(time) * self.frame.width;
-        [x, self.frame.bottom() - values.fraction(value) * self.frame.height]
+    fn pixel(&self, axis: &StageAxis, values: Range, (time, value): (f64, f64)) -> Pixel {
+        [axis.x(time), self.frame.bottom() - values.fraction(value) * self.frame.height]
     }
 
-    fn draw_time_ticks(&self, sheet: &mut Sheet, times: Range) {
-        let ticks = Ticks::new(times.min, times.max, 10.0);
-        for &time in &ticks.values {
-            let x = self.frame.left + times.fraction(time) * self.frame.width;
+    fn draw_time_ticks(&self, sheet: &mut Sheet, axis: &StageAxis) {
+        let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
+        for (x, label) in axis.ticks() {
             draw_grid_line(sheet, [x, self.frame.top], [x, self.frame.bottom()]);
-            let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
-            sheet.text([x, self.frame.bottom() + 4.0 + TICK_SIZE], &ticks.label(time), style);
+            sheet.text([x, self.frame.bottom() + 4.0 + TICK_SIZE], &label, style);
+        }
+        for [left, width] in axis.bands().filter(|[_, width]| *width > text_width("static", TICK_SIZE) + 8.0) {
+            let middle = [left + 0.5 * width, self.frame.bottom() + 4.0 + TICK_SIZE];
+            sheet.text(middle, "static", style.colour(GREY));
         }
     }
 
@@ -197,35 +200,15 @@ impl Chart {
         sheet.text([LEFT - 76.0, self.frame.top + 0.5 * self.frame.height], title, style);
     }
 
-    /// Broken lines where stages begin, and their names above the first frame, or upwards in it where stages are short.
-    fn draw_stages(&self, sheet: &mut Sheet, times: Range, stages: &[StageStart], with_names: bool) {
-        let frame = &self.frame;
-        let place = |stage: &StageStart| frame.left + times.fraction(stage.time) * frame.width;
-        for (k, stage) in stages.iter().enumerate().filter(|(_, stage)| stage.time.abs() < FARTHEST) {
-            let x = place(stage);
-            if k > 0 {
-                sheet.line([x, frame.top], [x, frame.bottom()], Style::line(GREY, 1.4).dashed());
-            }
-            let room = stages.get(k + 1).map_or(frame.right(), place) - x - 8.0;
-            let style = TextStyle::new(LABEL_SIZE).colour(GREY);
-            if with_names && text_width(&stage.name, LABEL_SIZE) <= room {
-                sheet.text([x + 4.0, frame.top - 7.0], &stage.name, style);
-            } else if with_names && room > LABEL_SIZE {
-                let name = fitted(&stage.name, LABEL_SIZE, 0.8 * frame.height);
-                sheet.text([x + LABEL_SIZE, frame.bottom() - 8.0], &name, style.halo().upward());
-            }
-        }
-    }
-
-    fn draw_lines(&self, sheet: &mut Sheet, group: &[&Series], times: Range, values: Range) {
+    fn draw_lines(&self, sheet: &mut Sheet, group: &[&Series], axis: &StageAxis, values: Range) {
         for (k, series) in group.iter().enumerate() {
             let mut path = Path::default();
             for run in series.points.split(|&point| !is_drawable(point)).filter(|run| !run.is_empty()) {
-                path.line(thinned(run.iter().map(|&point| self.pixel(times, values, point))));
+                path.line(thinned(run.iter().map(|&point| self.pixel(axis, values, point))));
             }
-            sheet.path(path, Style::line(line_colour(k), 2.0));
+            sheet.path(path, line_style(k));
             if let [only] = drawable(series).take(2).collect::<Vec<_>>()[..] {
-                sheet.circle(self.pixel(times, values, only), 4.0, Style::fill(line_colour(k)));
+                sheet.circle(self.pixel(axis, values, only), 4.0, Style::fill(line_colour(k)));
             }
         }
     }
@@ -238,7 +221,7 @@ impl Chart {
         let width = WIDTH - MARGIN - left - 44.0;
         for (k, series) in group.iter().take(shown).enumerate() {
             let y = line_y(k);
-            sheet.line([left, y], [left + 32.0, y], Style::line(line_colour(k), 2.6));
+            sheet.line([left, y], [left + 32.0, y], line_style(k));
             sheet.text([left + 44.0, y + 6.0], &fitted(&series.name, LABEL_SIZE, width), TextStyle::new(LABEL_SIZE));
         }
         if shown < group.len() {
@@ -252,10 +235,21 @@ fn line_colour(k: usize) -> Colour {
     LINES[k % LINES.len()]
 }
 
-/// `displacement [m]`, `energy [10⁶ J]`; the quantity alone for a bare number.
+/// Every second line of a frame is broken, so that neighbours differ without colour.
+fn line_style(k: usize) -> Style {
+    let style = Style::line(line_colour(k), if k % 4 < 2 { 2.0 } else { 3.2 });
+    if k % 2 == 1 { style.dashed() } else { style }
+}
+
+/// `displacement [mm]`, `energy [MJ/m]`; the quantity alone for a bare number.
 fn axis_title(quantity: &str, unit: &str, exponent: i32) -> String {
-    let power = if exponent == 0 { String::new() } else { format!("10{}", superscript(exponent)) };
-    let scale = [power.as_str(), unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
+    const PREFIXES: [(i32, &str); 6] = [(-9, "n"), (-6, "µ"), (-3, "m"), (3, "k"), (6, "M"), (9, "G")];
+    let prefix = PREFIXES.iter().find(|(power, _)| *power == exponent && !unit.is_empty());
+    let scale = match (exponent, prefix) {
+        (0, _) => unit.to_owned(),
+        (_, Some((_, prefix))) => format!("{prefix}{unit}"),
+        (_, None) => format!("10{} {unit}", superscript(exponent)).trim_end().to_owned(),
+    };
     let scale = if scale.is_empty() { scale } else { format!("[{scale}]") };
     [quantity, &scale].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
 }

@@ -43,10 +43,14 @@ impl Entry {
 pub enum Sign {
     /// Text alone.
     None,
+    /// Text below that of the entry before.
+    Blank,
     /// A line of a colour and a width (px).
     Line(Colour, f64),
     /// A broken line.
     Dashed(Colour, f64),
+    /// A short stroke.
+    Stroke,
     /// Two lines side by side.
     Hollow,
     /// An area.
@@ -130,6 +134,8 @@ fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
     };
     match sign {
         Sign::None => return 0.0,
+        Sign::Blank => {}
+        Sign::Stroke => sheet.line([left + 6.0, y + 6.0], [right - 6.0, y - 6.0], Style::line(INK, 4.0)),
         Sign::Line(colour, width) => sheet.line([left, y], [right, y], Style::line(colour, width)),
         Sign::Dashed(colour, width) => sheet.line([left, y], [right, y], Style::line(colour, width).dashed()),
         Sign::Hollow => {

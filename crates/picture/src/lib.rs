@@ -23,6 +23,7 @@ mod sheet;
 mod signs;
 mod slope;
 mod stage;
+mod stage_axis;
 mod svg;
 
 use std::io;
@@ -31,19 +32,20 @@ use std::path::Path;
 use enmm_io::files::{at_path, write_atomic};
 
 pub use annotations::{bolt_marks, counted, model_annotations, stars};
-pub use axes::number_text;
+pub use axes::{number_text, si_text, three_digits};
 pub use chart::{Chart, ChartSeries, chart_picture};
 pub use contours::{displacement_contours, mean_stress_contours};
 pub use covers::covers_picture;
 pub use displacement::displacement_picture;
-pub use histogram::histogram_picture;
-pub use history::{Series, StageStart, history_picture};
+pub use histogram::{Fit, histogram_picture};
+pub use history::{Series, history_picture};
 pub use model::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_picture};
 pub use reduction::{failure_picture, trials_picture};
 pub use signs::Held;
 pub use stage::{
     StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
+pub use stage_axis::StageStart;
 
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +69,15 @@ impl Picture {
         let pixels = raster::pixels(self.size, &self.marks);
         let pixels = pixels.ok_or_else(|| io::Error::other("the picture is too large to rasterise"))?;
         pixels.encode_png().map_err(io::Error::other)
+    }
+
+    /// Writes the picture into a directory, as PNG and as SVG of a name without ending.
+    ///
+    /// # Errors
+    /// As [`Picture::write_png`].
+    pub fn write(&self, directory: &Path, name: &str) -> io::Result<()> {
+        write_atomic(&directory.join(format!("{name}.svg")), self.svg().as_bytes())?;
+        self.write_png(&directory.join(format!("{name}.png")))
     }
 
     /// Writes the picture as PNG to `path`, whole or not at all.

@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 
 use super::Picture;
-use super::axes::{Bounds, LABEL_SIZE, View, is_drawable};
-use super::colour::{ACCENT, BLOCKS, Colour, GREY, INK, LINES, POND, WATER, WHITE};
+use super::axes::{Bounds, LABEL_SIZE, View, is_drawable, si_text};
+use super::colour::{ACCENT, BLOCKS, Colour, GREY, INK, LINES, POND, ROCKS, WATER, WHITE};
+use super::displacement::draw_length;
 use super::legend::{self, Entry, Legend, Sign};
 use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle, fitted};
 use super::signs::{self, Held, draw_held};
@@ -16,11 +17,15 @@ use enmm::geometry::{Point, Vector};
 use enmm_observe::{BoltCondition, Snapshot, height_at};
 
 /// Height (px) of the frame at most.
-const HEIGHT_MAX: f64 = 760.0;
+const HEIGHT_MAX: f64 = 720.0;
+/// Height (px) below the axis for the length bar.
+const LENGTH_ROW: f64 = 40.0;
 /// Mean element area (px²) below which the mesh would only grey the picture.
 const MESH_AREA: f64 = 60.0;
 /// More pieces of joint traces than this are drawn as thin lines.
 const TRACES_MANY: usize = 2500;
+/// Width (px) of the joints of the law of most of them.
+const JOINT_WIDTH: f64 = 1.8;
 /// Distance (px) of the signs of supports along an edge.
 const SUPPORT_DISTANCE: f64 = 32.0;
 /// Length (px) of the arrow of the largest force, and of a traction.
@@ -55,6 +60,12 @@ pub struct ModelAnnotations {
     pub loads: Vec<LoadMark>,
     /// Actions on all rock, in words.
     pub facts: Vec<String>,
+    /// Direction of the section, in words; empty when the case gives none.
+    pub section: String,
+    /// Strength and stiffness of each rock, in the order of [`Snapshot::rocks`].
+    pub rock_values: Vec<String>,
+    /// Strength of each joint law, in the order of [`Snapshot::joint_laws`].
+    pub law_values: Vec<String>,
     /// Lines of text about the size of the model.
     pub counts: Vec<String>,
     /// Pieces of joint traces: both ends (m), and the index of the joint law in [`Snapshot::joint_laws`].
@@ -158,6 +169,18 @@ pub struct BoltMark {
     pub condition: BoltCondition,
 }
 
+impl BoltMark {
+    /// Its tension, and whether it yields or is broken.
+    pub fn tension_text(&self) -> String {
+        let state = match self.condition {
+            BoltCondition::Broken => " broken",
+            BoltCondition::Yielded => " yields",
+            _ => "",
+        };
+        si_text(self.force, "N/m") + state
+    }
+}
+
 /// A joint set of the case.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SetMark {
@@ -171,23 +194,24 @@ pub struct SetMark {
     pub place: Option<Point>,
 }
 
-/// Draws the model: blocks, or rocks where there are several, in soft colours, mesh, joints by law, joint sets,
-/// supports by kind, loads, water, bolts, monitors and ports.
+/// Draws the model: rocks in soft colours, joints by law, joint sets, supports by kind, loads, water, bolts, monitors
+/// and ports; the legend has the strengths.
 pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Picture {
     let model = Model { snapshot, annotations };
     let legends = model.legends();
     let wide = Rect { left: LEFT, top: TOP, width: WIDTH - MARGIN - LEFT, height: HEIGHT_MAX };
     let view = View::fit(model.bounds(), wide);
     let beside = WIDTH - MARGIN - legend::BESIDE - view.area.right() >= legend::COLUMN;
-    let below = view.area.bottom() + BELOW_FRAME;
+    let below = view.area.bottom() + BELOW_FRAME + LENGTH_ROW;
     let bottom = if beside {
         below.max(TOP + legend::height_beside(&legends))
     } else {
         below + 30.0 + legend::height_below(&legends)
     };
     let mut sheet = Sheet::new(WIDTH, bottom + MARGIN);
-    draw_title(&mut sheet, &annotations.title, &time_text(snapshot.time));
+    draw_title(&mut sheet, &annotations.title, &caption(snapshot, &annotations.section));
     model.draw(&mut sheet, &view);
+    draw_length(&mut sheet, &view, view.area.bottom() + BELOW_FRAME + 0.6 * LENGTH_ROW);
     if beside {
         legend::draw_beside(&mut sheet, &legends, [view.area.right() + legend::BESIDE, TOP]);
     } else {
@@ -216,7 +240,7 @@ impl Model<'_> {
     fn draw(&self, sheet: &mut Sheet, view: &View) {
         sheet.clipped(&view.area, |sheet| {
             self.draw_pond(sheet, view);
-            self.draw_rock(sheet, view);
+            self.draw_by_rock(sheet, view);
             self.draw_water(sheet, view);
             self.draw_boxes(sheet, view);
         });
@@ -231,15 +255,35 @@ impl Model<'_> {
         view.draw_axes(sheet);
     }
 
+    /// Rocks in their colours, and joints.
+    fn draw_by_rock(&self, sheet: &mut Sheet, view: &View) {
+        let snapshot = self.snapshot;
+        let rock = |k: usize| snapshot.rock.get(k).map_or(0, |&rock| rock as usize);
+        draw_filled(sheet, &snapshot.elements, view, &ROCKS, rock);
+        self.draw_outlines(sheet, view);
+        self.draw_joints(sheet, view);
+    }
+
+    /// Joints, thinner where there are many.
+    fn draw_joints(&self, sheet: &mut Sheet, view: &View) {
+        let many = self.annotations.trace_segments.len() > TRACES_MANY;
+        if !many || outlines_show(self.snapshot, view) {
+            self.draw_traces(sheet, view, if many { 1.1 } else { JOINT_WIDTH });
+        }
+    }
+
+    /// Hatched held blocks, block outlines.
+    fn draw_outlines(&self, sheet: &mut Sheet, view: &View) {
+        sheet.hatched(block_outlines(self.snapshot, view, |boundary| boundary.fixed), GREY);
+        draw_block_outlines(sheet, self.snapshot, view);
+    }
+
     /// Blocks, mesh and joints.
     pub fn draw_rock(&self, sheet: &mut Sheet, view: &View) {
         let elements = self.snapshot.elements.len().max(1) as f64;
         let element_area = view.area.width * view.area.height / elements;
         self.draw_blocks(sheet, view, element_area > MESH_AREA);
-        let many = self.annotations.trace_segments.len() > TRACES_MANY;
-        if !many || outlines_show(self.snapshot, view) {
-            self.draw_traces(sheet, view, if many { 1.1 } else { 1.8 });
-        }
+        self.draw_joints(sheet, view);
     }
 
     /// Whether colours stand for rocks.
@@ -255,21 +299,39 @@ impl Model<'_> {
         if with_mesh {
             sheet.path(outlines(&snapshot.elements, view), Style::line(WHITE, 0.8).opacity(0.9));
         }
-        sheet.hatched(block_outlines(snapshot, view, |boundary| boundary.fixed), GREY);
-        draw_block_outlines(sheet, snapshot, view);
+        self.draw_outlines(sheet, view);
     }
 
-    /// Joints, coloured by law.
+    /// Joints by law.
     pub fn draw_traces(&self, sheet: &mut Sheet, view: &View, width: f64) {
-        for (law, &colour) in LINES.iter().enumerate() {
+        let laws = self.annotations.trace_segments.iter().map(|(_, law)| *law as usize + 1).max().unwrap_or(0);
+        for (law, style) in self.law_styles(laws, width).into_iter().enumerate() {
             let mut path = Path::default();
-            let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize % LINES.len() == law);
+            let of_law = self.annotations.trace_segments.iter().filter(|(_, l)| *l as usize == law);
             let shows = |ends: &[Point; 2]| Bounds::of(ends).is_some_and(|bounds| bounds.overlaps(&view.world));
             for (ends, _) in of_law.filter(|(ends, _)| ends.iter().all(is_drawable) && shows(ends)) {
                 path.line(ends.iter().map(|end| view.pixel(end)));
             }
-            sheet.path(path, Style::line(colour, width));
+            sheet.path(path, style);
         }
+    }
+
+    /// The line of each law: that of most joints is thin, those of others are wide or broken, so that they differ
+    /// without colour.
+    fn law_styles(&self, laws: usize, width: f64) -> Vec<Style> {
+        let mut lengths = vec![0.0; laws];
+        for (ends, law) in self.annotations.trace_segments.iter().filter(|(ends, _)| ends.iter().all(is_drawable)) {
+            if let Some(length) = lengths.get_mut(*law as usize) {
+                *length += (ends[1] - ends[0]).norm();
+            }
+        }
+        let rank = |law: usize| lengths.iter().filter(|length| **length > lengths[law]).count();
+        let style = |law: usize| {
+            let wide = if matches!(rank(law) % 4, 1 | 2) { 1.9 * width } else { width };
+            let style = Style::line(LINES[law % LINES.len()], wide);
+            if rank(law) % 4 >= 2 { style.dashed() } else { style }
+        };
+        (0..laws).map(style).collect()
     }
 
     /// Water outside the rock, which is drawn over it afterwards.
@@ -424,17 +486,29 @@ impl Model<'_> {
     }
 
     fn rock_entries(&self) -> Vec<Entry> {
-        let rocks = self.snapshot.rocks.iter().enumerate().filter(|_| self.has_rocks());
-        rocks.map(|(k, name)| Entry::new(Sign::Fill(BLOCKS[k % BLOCKS.len()]), name)).collect()
+        let used: HashSet<u32> = self.snapshot.rock.iter().copied().collect();
+        let rocks = self.snapshot.rocks.iter().enumerate().filter(|(k, _)| used.contains(&(*k as u32)));
+        rocks
+            .flat_map(|(k, name)| {
+                let values = self.annotations.rock_values.get(k);
+                with_values(Entry::new(Sign::Fill(ROCKS[k % ROCKS.len()]), name), values)
+            })
+            .collect()
     }
 
     fn joint_entries(&self) -> Vec<Entry> {
         let used: HashSet<u32> = self.annotations.trace_segments.iter().map(|(_, law)| *law).collect();
         let laws = self.snapshot.joint_laws.iter().enumerate().filter(|(law, _)| used.contains(&(*law as u32)));
-        let mut entries: Vec<Entry> =
-            laws.map(|(law, name)| Entry::new(Sign::Line(LINES[law % LINES.len()], 2.4), name)).collect();
+        let styles = self.law_styles(self.snapshot.joint_laws.len(), JOINT_WIDTH);
+        let law = |(law, name): (usize, &String)| {
+            let values = self.annotations.law_values.get(law);
+            let (colour, width) = styles[law].stroke.unwrap_or((INK, JOINT_WIDTH));
+            let sign = if styles[law].dashed { Sign::Dashed(colour, width) } else { Sign::Line(colour, width) };
+            with_values(Entry::new(sign, name), values)
+        };
+        let mut entries: Vec<Entry> = laws.flat_map(law).collect();
         let sets = self.annotations.sets.iter().filter(|set| set.place.is_some());
-        entries.extend(sets.map(|set| Entry::new(Sign::None, format!("{}: {}", set.name, set.detail))));
+        entries.extend(sets.flat_map(|set| with_values(Entry::new(Sign::Stroke, &set.name), Some(&set.detail))));
         entries
     }
 
@@ -469,6 +543,19 @@ impl Model<'_> {
         let present = all.into_iter().filter(|(present, ..)| *present);
         present.map(|(_, sign, text)| Entry::new(sign, text)).collect()
     }
+}
+
+/// Section and, when the model has moved, the time.
+fn caption(snapshot: &Snapshot, section: &str) -> String {
+    let time = if snapshot.time == 0.0 { String::new() } else { time_text(snapshot.time) };
+    let parts = [section, &time].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
+    if parts.is_empty() { "section".to_owned() } else { parts.join(", ") }
+}
+
+/// An entry, and below it its values.
+fn with_values(entry: Entry, values: Option<&String>) -> Vec<Entry> {
+    let below = values.filter(|values| !values.is_empty()).map(|values| Entry::new(Sign::Blank, values));
+    std::iter::once(entry).chain(below).collect()
 }
 
 /// A text in a white rim near a position, unless there is no room.

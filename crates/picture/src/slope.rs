@@ -15,9 +15,9 @@ pub const TOP: f64 = 100.0;
 /// Right and bottom margin (px).
 pub const MARGIN: f64 = 32.0;
 /// Distance (px) of the lines of a legend.
-pub const LINE_HEIGHT: f64 = 25.0;
+pub const LINE_HEIGHT: f64 = 26.0;
 /// Height (px) below a frame for numbers and the title of the axis.
-pub const BELOW_FRAME: f64 = 62.0;
+pub const BELOW_FRAME: f64 = 66.0;
 
 /// Mean area (px²) of a block, about, below which outlines of blocks are left out.
 const OUTLINE_AREA: f64 = 12.0;
@@ -29,7 +29,7 @@ const ROUNDING: f64 = 0.1;
 pub fn draw_title(sheet: &mut Sheet, title: &str, caption: &str) {
     let width = WIDTH - LEFT - MARGIN;
     sheet.text([LEFT, 46.0], &fitted(title, 27.0, width), TextStyle::new(27.0));
-    sheet.text([LEFT, 78.0], &fitted(caption, 18.0, width), TextStyle::new(18.0).colour(GREY));
+    sheet.text([LEFT, 78.0], &fitted(caption, 20.0, width), TextStyle::new(20.0).colour(GREY));
 }
 
 /// Says so if there is no element.

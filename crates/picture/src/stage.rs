@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Picture;
-use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, si_text};
+use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, si_text, three_digits};
 use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
 use super::displacement::draw_length;
@@ -129,7 +129,7 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         entry(ContactState::Open, Sign::Hollow, "open"),
     ];
     let mut legends = vec![Legend { title: "Joints, total length", entries }];
-    if !stage.bolts.is_empty() {
+    if stage.bolts.iter().any(|bolt| bolt.condition != BoltCondition::Absent) {
         let entries = vec![Entry::new(Sign::Bolt, "bolt with its tension")];
         legends.push(Legend { title: "Marks", entries });
     }
@@ -222,7 +222,7 @@ fn vectors_picture(
     let ticks = if logarithmic { decade_ticks(largest / size) } else { linear_ticks(largest / size) };
     draw_bar(&mut sheet.sheet, &view.area, &format!("{name} [{unit}]"), &ticks);
     let scale = if logarithmic { ", logarithmic scale" } else { "" };
-    sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", number_text(largest / size)))
+    sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", three_digits(largest / size)))
 }
 
 /// Ticks from zero to `largest`.
@@ -346,12 +346,7 @@ impl<'a> StageSheet<'a> {
         draw_bolts(&mut self.sheet, &view, &there);
         let mut labels = Labels::new(view.area);
         for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-            let state = match bolt.condition {
-                BoltCondition::Broken => " broken",
-                BoltCondition::Yielded => " yields",
-                _ => "",
-            };
-            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &(si_text(bolt.force, "N/m") + state));
+            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &bolt.tension_text());
         }
         view.draw_axes(&mut self.sheet);
     }

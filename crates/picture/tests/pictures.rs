@@ -79,8 +79,16 @@ impl Drawn {
 
     /// The mean of the corners of the first outline (px).
     fn middle(&self) -> [f64; 2] {
-        let first = self.attributes["d"][1..].split(['M', 'Z']).next().unwrap();
-        let corners: Vec<[f64; 2]> = first
+        Self::middle_of(self.attributes["d"].split(['M', 'Z']).find(|outline| !outline.is_empty()).unwrap())
+    }
+
+    /// The mean of the corners of the last outline (px).
+    fn last_middle(&self) -> [f64; 2] {
+        Self::middle_of(self.attributes["d"].split(['M', 'Z']).rfind(|outline| !outline.is_empty()).unwrap())
+    }
+
+    fn middle_of(outline: &str) -> [f64; 2] {
+        let corners: Vec<[f64; 2]> = outline
             .split('L')
             .map(|corner| corner.split_once(' ').unwrap())
             .map(|(x, y)| [x.parse().unwrap(), y.parse().unwrap()])
@@ -134,12 +142,13 @@ fn two_blocks() -> Picture {
 fn blocks_and_joints_have_their_colours_where_the_svg_has_them() {
     let picture = two_blocks();
     let (drawn, pixels) = (Drawn::all(&picture.svg()), pixels(&picture));
-    let [free, held] =
-        ["#cde0f0", "#f6e0c4"].map(|fill| drawn.iter().find(|shape| shape.is("fill", fill)).unwrap().middle());
-    assert_eq!(colour_at(&pixels, free), "#cde0f0");
+    // Both blocks are of one rock, and one shape.
+    let rock = drawn.iter().find(|shape| shape.is("fill", "#f0e6d0")).unwrap();
+    let [free, held] = [rock.middle(), rock.last_middle()];
+    assert_eq!(colour_at(&pixels, free), "#f0e6d0");
     // Slanting lines, 1.4 px wide every 9 px, cross the held block.
     let near = (0..8100).map(|k| [held[0] + f64::from(k % 90), held[1] + f64::from(k / 90)]);
-    let plain = near.filter(|at| colour_at(&pixels, *at) == "#f6e0c4").count();
+    let plain = near.filter(|at| colour_at(&pixels, *at) == "#f0e6d0").count();
     assert!((4000..8100).contains(&plain), "{plain}");
     // On the joint, and in the legend.
     let joints: Vec<_> = drawn.iter().filter(|shape| shape.is("stroke", "#1f57a0")).map(Drawn::middle).collect();
@@ -251,10 +260,11 @@ fn histories_are_drawn_by_quantity() {
         series("unbalanced ratio", "", |_| 0.5),
         series("crest velocity", "m/s", |t| -0.04 * t),
     ];
-    let stages = [("gravity", 0.0), ("failure", 0.7)].map(|(name, time)| StageStart { name: name.to_owned(), time });
+    let stages = [("gravity", 0.0, true), ("failure", 0.7, false)];
+    let stages = stages.map(|(name, time, is_static)| StageStart { name: name.to_owned(), time, is_static });
     let picture = history_picture("Monitors of the rock slope", &all, &stages);
     check(&picture, "history.png");
-    for text in ["amount [m]", "amount [10⁶ J]", ">gravity<", ">failure<"] {
+    for text in ["amount [m]", "amount [MJ]", ">gravity<", ">failure<", ">static<", "time in dynamic stages"] {
         assert!(picture.svg().contains(text), "{text}");
     }
 }
@@ -267,9 +277,10 @@ fn the_model_names_what_acts_on_it() {
     let names = ["held along x and y", "held along one axis", "quiet boundary", "free field", "box held", "block held"];
     let more =
         ["water table", "load", "pressure in joints", "bolt", "bolt installed later", "monitor", "port in joints"];
-    for name in names.iter().chain(&more).chain(&["set 1: 38°, every 3.4 m", "10 kPa"]) {
+    for name in names.iter().chain(&more).chain(&["38°, every 3.4 m", "10 kPa"]) {
         assert!(picture.svg().contains(&format!(">{name}<")), "{name}");
     }
+    assert!(picture.svg().contains(">10 m<"), "a length bar");
     // A monitor and a port of one name and place have one label.
     assert_eq!(picture.svg().matches(">crest<").count(), 1);
     assert!(!picture.svg().contains("cover"));
@@ -322,7 +333,7 @@ fn numbers_that_are_not_finite_are_left_out() {
         check(&covers_picture(&broken, &annotations, &stars), "broken_covers.png");
         check(&displacement_picture(&broken, "broken", &profile()), "broken_displacement.png");
         let spike = series("spike", "m", |t| if t == 1.0 { bad } else { t });
-        let stage = StageStart { name: "bad".to_owned(), time: bad };
+        let stage = StageStart { name: "bad".to_owned(), time: bad, is_static: true };
         let series = [spike, series("only", "J", |_| bad)];
         check(&history_picture("spike", &series, &[stage.clone(), stage]), "broken_history.png");
     }

@@ -1,6 +1,7 @@
 // Histories on a canvas whose time axis is that of the slider under it.
 
 const INSET = 8; // Half the thumb of the slider: its ends are there.
+const STAGE_ROWS = [10, 22, 34]; // Base lines of the names of stages.
 const DASHES = [[], [6, 3], [2, 3]];
 
 // A number of the series 1, 2, 5, 10 … that is not below `least`.
@@ -132,7 +133,8 @@ class Chart {
   }
 
   drawStages(stages, x, height, theme) {
-    const { pen } = this;
+    const { pen } = this,
+      ends = STAGE_ROWS.map(() => -Infinity);
     for (const stage of stages) {
       pen.strokeStyle = theme.soft;
       pen.lineWidth = 1;
@@ -142,7 +144,12 @@ class Chart {
       pen.lineTo(Math.round(x(stage.start)) + 0.5, height);
       pen.stroke();
       pen.setLineDash([]);
-      this.write(stage.name, x(stage.start) + 4, 10, theme);
+      // Names that would overlap stand in rows; one without room is left to the table of stages.
+      const left = x(stage.start) + 4,
+        row = ends.findIndex((end) => end < left);
+      if (row < 0) continue;
+      ends[row] = left + pen.measureText(stage.name).width + 6;
+      this.write(stage.name, left, STAGE_ROWS[row], theme);
     }
   }
 

@@ -155,6 +155,11 @@ function unitFor(unit, size) {
       ["kN/m", 1e3, 1e6],
       ["MN/m", 1e6, Infinity],
     ],
+    N: [
+      ["N", 1, 1e3],
+      ["kN", 1e3, 1e6],
+      ["MN", 1e6, Infinity],
+    ],
     "J/m": [
       ["J/m", 1, 1e3],
       ["kJ/m", 1e3, 1e6],

@@ -35,6 +35,11 @@ function measured(name, value, unit) {
   return [name, withUnit(value, unit), `${value} ${unit}`];
 }
 
+// A coordinate: always in metres, so that two of one place compare.
+function placed(name, value) {
+  return [name, `${Number(value.toFixed(4))} m`.replace("-", "−"), `${value} m`];
+}
+
 function section(title, ...children) {
   return element("section", {}, element("h2", {}, title), ...children);
 }
@@ -59,8 +64,8 @@ function numbersOfBlock(film, k, frame) {
     ["State", rock ? `${state}, ${rock}` : state],
     measured("Area", block.area, "m²"),
     measured("Mass", block.mass, "kg/m"),
-    measured("Centroid x", shape.originX + shape.centreX[k] + frame.ux[k], "m"),
-    measured("Centroid y", shape.originY + shape.centreY[k] + frame.uy[k], "m"),
+    placed("Centroid x", shape.originX + shape.centreX[k] + frame.ux[k]),
+    placed("Centroid y", shape.originY + shape.centreY[k] + frame.uy[k]),
     measured("Displacement", Math.hypot(frame.ux[k], frame.uy[k]), "m"),
     measured("… x", frame.ux[k], "m"),
     measured("… y", frame.uy[k], "m"),
@@ -96,8 +101,8 @@ function numbersOfMonitor(film, k, frame) {
   const [x, y] = film.head.monitors[k].place,
     monitor = frame.monitors[k];
   return [
-    measured("Placed at x", x, "m"),
-    measured("Placed at y", y, "m"),
+    placed("Placed at x", x),
+    placed("Placed at y", y),
     measured("Displacement", Math.hypot(monitor.ux, monitor.uy), "m"),
     measured("… x", monitor.ux, "m"),
     measured("… y", monitor.uy, "m"),
@@ -136,6 +141,18 @@ function choiceSection(film, choice, frame) {
   made.id = "choice";
   return made;
 }
+
+// Keys of the page and what they do.
+const KEYS = [
+  ["Space", "play or pause"],
+  ["← →", "one frame back or forward"],
+  ["Home, End", "first and last moment"],
+  ["+ − 0", "zoom in, zoom out, whole slope"],
+  ["1 to 5", "colours"],
+  ["D", "light or dark"],
+  ["Esc", "let go of a block or monitor"],
+  ["?", "this list"],
+];
 
 // Marks beside the colour: a reader who sees no colour sees the mark.
 const VERDICTS = { stable: "● stable", unstable: "✕ unstable", caught: "▲ caught" };
@@ -251,11 +268,6 @@ function accuracySection(film) {
       `Corners are drawn within ${withUnit(quantum / 2, "m")} of the result, in each axis. Displacements ` +
         "of blocks and all numbers of monitors and histories have 7 digits; rotations, velocities and stresses of " +
         "blocks have 4. Between two frames the picture is interpolated; numbers are those of the frame before.",
-    ),
-    element(
-      "p",
-      { class: "soft" },
-      "Keys: space plays, ← → step, Home and End, + − 0 zoom, 1 to 5 colours, D light or dark, Esc lets go.",
     ),
   );
 }

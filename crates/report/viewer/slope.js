@@ -2,6 +2,7 @@
 
 const TINY = 24; // Pixels below which a block is drawn by its corners alone.
 const REACH = 12; // How near (CSS pixels) a click must come to a monitor.
+const FOOT = 30; // Height of the length bar with its label (px).
 
 class Slope {
   constructor(canvas, film) {
@@ -42,7 +43,7 @@ class Slope {
     if (this.fitted) this.fit();
   }
 
-  // Shows all rock of the reference configuration, with air for what falls and for the legend.
+  // Shows all rock of the reference configuration, with air for what falls and a foot for the length bar.
   fit() {
     const { x, y } = this.film.shape,
       { clientWidth: width, clientHeight: height } = this.canvas;
@@ -51,8 +52,8 @@ class Slope {
       [left, right] = [Math.min(left, x[c]), Math.max(right, x[c])];
       [low, high] = [Math.min(low, y[c]), Math.max(high, y[c])];
     }
-    const scale = Math.min(width / ((right - left) * 1.08 || 1), (height - 20) / ((high - low) * 1.12 || 1));
-    this.camera = { x: 0.5 * (left + right), y: 0.5 * (low + high), scale: scale || 1 };
+    const scale = Math.min(width / ((right - left) * 1.08 || 1), (height - 2 * FOOT) / ((high - low) * 1.06 || 1)) || 1;
+    this.camera = { x: 0.5 * (left + right), y: 0.5 * (low + high) - (0.5 * FOOT) / scale, scale };
     this.fitted = true;
   }
 

@@ -29,6 +29,7 @@ class Viewer {
     this.update();
     this.slope.resize();
     this.slope.fit();
+    this.follow(location.hash);
   }
 
   // Makes tables, charts, ranges and the length of the slider again, for a film that has grown.
@@ -365,9 +366,10 @@ class Viewer {
     act("zoom-in", () => slope.zoom(1.5));
     act("zoom-out", () => slope.zoom(1 / 1.5));
     act("zoom-fit", () => slope.fit());
-    new ResizeObserver(() => this.refresh()).observe(by("stage"));
+    new ResizeObserver(() => this.refresh()).observe(by("view"));
     document.addEventListener("keydown", (event) => this.key(event));
     this.listenToPointers();
+    this.listenToSaves();
   }
 
   switchTheme() {
@@ -378,6 +380,87 @@ class Viewer {
     const hidden = document.querySelector("main").classList.toggle("wide");
     by("toggle-panel").textContent = hidden ? "Show panel" : "Hide panel";
     by("toggle-panel").setAttribute("aria-expanded", !hidden);
+  }
+
+  listenToSaves() {
+    const name = fileName(this.film.head).replace(/\.[^.]*$/, "") || "slope";
+    by("help").addEventListener("click", () => this.showKeys());
+    by("save-picture").addEventListener("click", () =>
+      this.picture().toBlob((blob) => offer(blob, `${name}_${digits(this.player.time)}.png`)),
+    );
+    by("save-table").addEventListener("click", () =>
+      offer(new Blob([csvOf(this.film)], { type: "text/csv" }), `${name}_history.csv`),
+    );
+    by("save-table").hidden = !this.film.rows.time.length;
+    by("save-film").hidden = !window.MediaRecorder || !by("slope").captureStream;
+    by("save-film").addEventListener("click", () => this.record(`${name}.webm`));
+    by("copy-link").addEventListener("click", () => this.copyLink());
+    window.addEventListener("hashchange", () => this.follow(location.hash));
+  }
+
+  showKeys() {
+    const rows = KEYS.map(([key, act]) =>
+      element("tr", {}, element("th", { scope: "row" }, element("kbd", {}, key)), element("td", {}, act)),
+    );
+    by("keys").querySelector("tbody").replaceChildren(...rows);
+    by("keys").showModal();
+  }
+
+  // The slope on its paper with title and moment, as another canvas.
+  picture() {
+    this.draw();
+    const slope = by("slope"),
+      ratio = slope.width / (slope.clientWidth || 1),
+      head = Math.round(44 * ratio);
+    const made = element("canvas", { width: slope.width, height: slope.height + head }),
+      pen = made.getContext("2d");
+    pen.fillStyle = this.theme.paper;
+    pen.fillRect(0, 0, made.width, made.height);
+    pen.drawImage(slope, 0, head);
+    pen.fillStyle = this.theme.ink;
+    pen.font = `${15 * ratio}px system-ui, sans-serif`;
+    pen.fillText(by("title").textContent, 10 * ratio, 18 * ratio, made.width - 20 * ratio);
+    pen.font = `${12 * ratio}px system-ui, sans-serif`;
+    pen.fillText(`${this.colour.name}; ${by("clock").textContent}`, 10 * ratio, 36 * ratio, made.width - 20 * ratio);
+    return made;
+  }
+
+  // Plays the film from its start and saves what is shown.
+  record(name) {
+    const recorder = new MediaRecorder(by("slope").captureStream(30)),
+      parts = [];
+    recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
+    recorder.addEventListener("stop", () => {
+      by("save-film").disabled = false;
+      offer(new Blob(parts, { type: recorder.mimeType }), name);
+    });
+    by("save-film").disabled = true;
+    this.player.pause();
+    this.player.seek(this.film.start);
+    recorder.start();
+    this.player.toggle();
+    const watch = setInterval(() => {
+      if (this.player.playing) return;
+      clearInterval(watch);
+      // The last picture stays for a moment.
+      setTimeout(() => recorder.stop(), 300);
+    }, 100);
+  }
+
+  // Puts the moment and the colour into the address, and that into the clipboard where the browser lets it.
+  copyLink() {
+    location.hash = `t=${Number(this.player.time.toPrecision(9))}&colour=${this.colour.key}`;
+    navigator.clipboard?.writeText(location.href).catch(() => {});
+    by("copy-link").textContent = "In the address bar";
+    setTimeout(() => (by("copy-link").textContent = "Link"), 2000);
+  }
+
+  // Goes to the moment and the colour of a link; what it does not name, or names wrongly, stays.
+  follow(hash) {
+    const wanted = new URLSearchParams(hash.replace(/^#/, "")),
+      time = wanted.get("t");
+    by("colours").querySelector(`[data-colour="${CSS.escape(wanted.get("colour") ?? "")}"]`)?.click();
+    if (time !== null && time !== "" && Number.isFinite(Number(time))) this.player.seek(Number(time));
   }
 
   listenToPointers() {
@@ -442,6 +525,7 @@ class Viewer {
 
   key(event) {
     const { target, key } = event;
+    if (by("keys").open) return key === "Escape" && by("keys").close();
     if (event.ctrlKey || event.metaKey || event.altKey || target.tagName === "SELECT" || target.id === "magnify")
       return;
     // A focused button or summary takes the space bar itself.
@@ -458,6 +542,7 @@ class Viewer {
         "-": () => slope.zoom(1 / 1.5),
         0: () => slope.fit(),
         d: () => this.switchTheme(),
+        "?": () => this.showKeys(),
         Escape: () => this.choose({}),
       };
     const colour = by("colours").querySelector(`[data-colour="${COLOURS[Number(key) - 1]?.key}"]`);
@@ -467,6 +552,24 @@ class Viewer {
     act();
     this.refresh();
   }
+}
+
+// Saves bytes under a name.
+function offer(blob, name) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+// The histories as CSV, with the names of history.csv as far as the film has them.
+function csvOf(film) {
+  const cell = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const head = film.head.columns.map(({ name, unit }) => cell(unit ? `${name} [${unit}]` : name));
+  const columns = film.head.columns.map((_, c) => (c === 0 ? film.rows.time : film.rows.columns[c]));
+  const rows = film.rows.time.map((_, k) => columns.map((column) => column[k]).join(","));
+  return [head.join(","), ...rows, ""].join("\n");
 }
 
 // A piece of a line for legends.

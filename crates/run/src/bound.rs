@@ -1,13 +1,18 @@
 //! Limit analysis from case file to record.
 
 use std::io;
+use std::path::Path;
 
 use serde_json::{Value, json};
 
+use enmm::engine_version;
 use enmm_io::CaseError;
 use enmm_io::LoadedCase;
+use enmm_io::files::{at_path, write_atomic};
 use enmm_stability::limit_analysis::continuum::{Bracket, Motion, bracket as bracket_of};
 use enmm_stability::limit_analysis::{self, Bound, BoundError, Collapse, Factor};
+
+use crate::input::input_record;
 
 /// Why there is no bound.
 #[derive(Debug, thiserror::Error)]
@@ -48,6 +53,25 @@ fn failure(loaded: &LoadedCase, error: BoundError) -> BoundFailure {
         BoundError::Case(invalid) => BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message)),
         unsolved => BoundFailure::Unsolved(unsolved),
     }
+}
+
+/// Writes `bound.json`: a record of a limit analysis with case, version and input.
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn write_bound(directory: &Path, loaded: &LoadedCase, bound: &Value) -> io::Result<()> {
+    let path = directory.join("bound.json");
+    let record = json!({
+        "title": loaded.case.title,
+        "version": engine_version(),
+        "case_file": loaded.source.file(),
+        "case_hash": loaded.hash,
+        "settings": loaded.settings,
+        "bound": bound,
+        "input": input_record(loaded),
+    });
+    let text = serde_json::to_vec_pretty(&record).map_err(io::Error::from).map_err(at_path(&path))?;
+    write_atomic(&path, &text)
 }
 
 /// A bracket as JSON, its factors as those of a bound.

@@ -15,24 +15,36 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 19] = [
+const FILES: [&str; 31] = [
     "blocks.csv",
+    "bound.json",
     "checkpoint.enmm",
     "covers.png",
+    "covers.svg",
     "deformed.png",
+    "deformed.svg",
+    "energy.png",
+    "energy.svg",
     "ensemble.csv",
     "ensemble.json",
     "ensemble.png",
+    "ensemble.svg",
     STORE,
     "failure.png",
+    "failure.svg",
     "film.bin",
     "fos.csv",
     "fos.json",
     "fos.png",
+    "fos.svg",
     "history.csv",
     "history.png",
+    "history.svg",
     "model.png",
+    "model.svg",
     "report.html",
+    "report_a4.html",
+    "report_a4.pdf",
     "run.pvd",
     "summary.json",
 ];
@@ -197,7 +209,7 @@ pub fn is_result(path: &Path) -> bool {
 
 /// Whether a name is that of a picture of a stage, such as `stage1_joints.png`.
 fn is_stage_picture(name: &str) -> bool {
-    let rest = name.strip_prefix("stage").and_then(|rest| rest.strip_suffix(".png"));
+    let rest = name.strip_prefix("stage").and_then(|rest| rest.strip_suffix(".png").or(rest.strip_suffix(".svg")));
     rest.and_then(|rest| rest.split_once('_')).is_some_and(|(number, _)| number.parse::<u32>().is_ok())
 }
 

@@ -12,11 +12,12 @@ use serde_json::{Value, json};
 use super::bound::{bound_record, bracket_record};
 use super::folder::Folder;
 pub use super::found::{Found, remedy};
+use super::input::input_record;
 use super::mechanism_page::write_fos_page;
 use super::run::has_run;
-use super::support::{BoltUse, bolt_uses};
+use super::summary::BoltRecord;
 use enmm::engine_version;
-use enmm::model::case::{Case, StageKind, Support};
+use enmm::model::case::{Case, StageKind};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
@@ -27,7 +28,7 @@ use enmm_stability::strength_reduction::{
 };
 
 /// Pictures of the trials and of the mechanism.
-const PICTURES: [&str; 2] = ["fos.png", "failure.png"];
+const PICTURES: [&str; 2] = ["fos", "failure"];
 
 /// How to look for the factor of safety of a case, and where results go.
 #[derive(Debug)]
@@ -202,14 +203,15 @@ fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<
 
 fn draw(directory: &Path, reduction: &Reduction) -> io::Result<()> {
     let title = &reduction.simulation.case().title;
-    trials_picture(title, reduction).write_png(&directory.join(PICTURES[0]))?;
-    failure_picture(title, reduction).write_png(&directory.join(PICTURES[1]))
+    trials_picture(title, reduction).write(directory, PICTURES[0])?;
+    failure_picture(title, reduction).write(directory, PICTURES[1])
 }
 
 /// Removes the pictures of an earlier search, and its page, unless a run has left one there.
 fn remove_drawings(directory: &Path) -> io::Result<()> {
     let page = (!has_run(directory)).then_some(PAGE);
-    let drawings = PICTURES.into_iter().chain(page).map(|name| directory.join(name));
+    let pictures = PICTURES.into_iter().flat_map(|name| ["png", "svg"].map(|end| format!("{name}.{end}")));
+    let drawings = pictures.chain(page.map(str::to_owned)).map(|name| directory.join(name));
     drawings.filter(|path| path.exists()).try_for_each(|path| fs::remove_file(&path).map_err(at_path(&path)))
 }
 
@@ -243,6 +245,7 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         })).collect::<Vec<_>>(),
         "wall_seconds": wall,
         "mechanisms": mechanisms,
+        "input": input_record(loaded),
     });
     if !loaded.settings.is_empty() {
         record["settings"] = json!(loaded.settings);
@@ -277,7 +280,7 @@ fn search_record(reduction: &Reduction) -> Value {
             (None, Err(refused)) => json!({ "refused": refused }),
         },
         "remedy": remedy(reduction),
-        "bolts": bolt_uses(&reduction.simulation).iter().map(bolt_record).collect::<Vec<_>>(),
+        "bolts": BoltRecord::of(&reduction.simulation),
         "notes": reduction.simulation.built().notes,
         "warnings": reduction.warnings,
     });
@@ -296,16 +299,6 @@ fn block_record(block: &FailingBlock) -> Value {
         "displacement": block.displacement,
         "rotation": block.rotation,
         "speed": block.speed,
-    })
-}
-
-fn bolt_record(bolt: &BoltUse) -> Value {
-    json!({
-        "bolt": bolt.name,
-        "support": bolt.support.map_or("stretched", Support::name),
-        "force": bolt.force,
-        "yield_force": bolt.yield_force,
-        "utilisation": bolt.utilisation(),
     })
 }
 

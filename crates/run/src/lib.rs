@@ -11,14 +11,14 @@ mod folder;
 pub mod fos;
 mod found;
 pub mod history;
+mod input;
 mod mechanism_page;
 pub mod rock_mass;
 mod run;
 pub mod summary;
-pub mod support;
 pub mod vtu;
 
-pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record};
+pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};
 pub use check::check;
 pub use ensemble::{
     Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns,
@@ -26,6 +26,7 @@ pub use ensemble::{
 };
 pub use folder::{Folder, STORE, check_output, check_owner, is_result, make_place};
 pub use fos::{FosError, FosOptions, fos};
+pub use input::input_record;
 pub use mechanism_page::{write_bound_page, write_bracket_page};
 pub use run::{Observer, RunError, RunOptions, RunProgress, draw_checked, run};
 pub use summary::{RunStatus, Summary};

@@ -7,7 +7,7 @@ use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
 use enmm::engine_version;
-use enmm::model::case::StageKind;
+use enmm::model::case::{StageKind, Support};
 use enmm::model::tables::Seconds;
 use enmm::model::{Ledger, Simulation, StepError};
 use enmm_io::files::{at_path, write_atomic};
@@ -84,6 +84,8 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
+    /// Input of the case.
+    pub input: serde_json::Value,
     /// Why the results of a run that has ended are worthless; it is among the warnings too.
     #[serde(skip)]
     pub doubt: Option<String>,
@@ -197,6 +199,10 @@ pub struct BoltRecord {
     pub place: [f64; 2],
     /// Tension of one bar (N).
     pub force: f64,
+    /// Force that it has in a search for the factor of safety; null where the rock stretches it.
+    pub support: Option<Support>,
+    /// Tension over the force at which the bar yields; null for a bar that never does.
+    pub utilisation: Option<f64>,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
     /// Its condition.
@@ -204,7 +210,8 @@ pub struct BoltRecord {
 }
 
 impl BoltRecord {
-    fn of(simulation: &Simulation) -> Vec<Self> {
+    /// Those of a model.
+    pub fn of(simulation: &Simulation) -> Vec<Self> {
         let record = |line: &BoltLine| {
             let case = &simulation.case().bolts[line.bolt as usize];
             let middle = (line.reference[0] + line.reference[1]) * 0.5;
@@ -213,6 +220,8 @@ impl BoltRecord {
                 bolt: line.bolt,
                 place: [middle.x, middle.y],
                 force: line.force * case.spacing,
+                support: case.support,
+                utilisation: case.yield_force.map(|yields| line.force * case.spacing / yields),
                 plastic_elongation: line.plastic_elongation,
                 state: line.condition,
             }
@@ -307,6 +316,7 @@ pub(super) struct RunRecord<'a> {
     pub ledger: &'a Ledger,
     pub wall: WallSeconds,
     pub warnings: Vec<String>,
+    pub input: serde_json::Value,
     pub doubt: Option<String>,
 }
 
@@ -358,6 +368,7 @@ impl Summary {
             crumbs: CrumbRecord::all(simulation.built()),
             notes: simulation.built().notes.clone(),
             warnings: record.warnings,
+            input: record.input,
             doubt: record.doubt,
         }
     }

@@ -9,17 +9,16 @@ use enmm::model::case::{Case, StageKind, Support};
 /// Stiffness of a bar whose force is given, over that of steel: a metre of slip changes the force by a few per cent.
 const SOFT: f64 = 1e-4;
 
-/// The case with each bolt that is an active or a passive support at its pretension or its yield force, whatever the
-/// rock does.
+/// The case with each bolt that is an active or a passive support at its pretension or its yield force, which hardly
+/// change as the rock moves.
 pub fn with_support_forces(case: &Case) -> Case {
     let mut case = case.clone();
     for bolt in &mut case.bolts {
-        let force = match bolt.support {
+        bolt.pretension = match bolt.support {
             None => continue,
             Some(Support::Active) => bolt.pretension,
             Some(Support::Passive) => bolt.yield_force.unwrap_or(bolt.pretension),
         };
-        (bolt.pretension, bolt.yield_force) = (force, Some(force));
         bolt.young *= SOFT;
     }
     case

@@ -13,13 +13,10 @@ const TRACE_SHARE: f64 = 0.05;
 /// # Errors
 /// The first set whose direction or persistence is not given, or given twice.
 pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
-    let section = case.section.take();
+    let section = case.section;
     if let Some(section) = section {
         let key = Key::root().field("section");
         number(&key, "azimuth_deg", section.azimuth_deg, Range::within(360.0), "degrees", "clockwise from north")?;
-        if case.joint_sets.iter().all(|set| set.dip_direction_deg.is_none()) {
-            told.notes.push(format!("{key}: has no effect, since no joint set has `dip_direction_deg`"));
-        }
     }
     for (k, set) in case.joint_sets.iter_mut().enumerate() {
         let key = Key::root().field("joint_set").index(k);

@@ -68,7 +68,6 @@ impl Case {
         let short = [
             ("stage", self.stages.iter().any(|stage| stage.duration_max.is_some())),
             ("joint_set", self.joint_sets.iter().any(unfinished)),
-            ("section", self.section.is_some()),
             ("cut", !self.cuts.is_empty()),
             ("in_situ", self.in_situ.as_ref().is_some_and(stress)),
             ("bolt_pattern", !self.bolt_patterns.is_empty()),

@@ -15,11 +15,16 @@ mod stages;
 use thiserror::Error;
 
 use super::key::Key;
-use super::{Case, Domain, FmuNotes, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, Rock, Solver};
+use super::{
+    Case, Domain, FmuNotes, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, ReportNotes, Rock, Solver,
+};
 use checks::{
     COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, harmless, number, optional, point, points,
     polygon, region, unique, whole,
 };
+
+/// Longest line of the cover of a report (bytes).
+const REPORT_NOTE_MAX: usize = 4000;
 
 /// A value of a case that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -74,6 +79,7 @@ impl Case {
         if let Some(notes) = &self.fmu {
             fmu_notes(&root.field("fmu"), notes)?;
         }
+        report_notes(&root.field("report"), &self.report)?;
         stages::validate_stages(&root.field("stage"), self)?;
         bolts::validate_installs(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
@@ -284,6 +290,20 @@ fn fmu_notes(key: &Key, notes: &FmuNotes) -> Check {
     for (name, note) in [("author", &notes.author), ("copyright", &notes.copyright), ("license", &notes.license)] {
         if note.as_ref().is_some_and(|note| note.trim().is_empty()) {
             return fail(&key.field(name), "is empty, must say something; leave it out for what holds without it");
+        }
+    }
+    Ok(())
+}
+
+fn report_notes(key: &Key, notes: &ReportNotes) -> Check {
+    for (name, note) in notes.entries() {
+        let Some(note) = note else { continue };
+        if note.trim().is_empty() {
+            return fail(&key.field(name), "is empty, must say something; leave it out for a report without this line");
+        }
+        if note.len() > REPORT_NOTE_MAX {
+            let message = format!("has {} bytes, the limit is {REPORT_NOTE_MAX}; shorten it", note.len());
+            return fail(&key.field(name), message);
         }
     }
     Ok(())

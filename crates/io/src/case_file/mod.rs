@@ -22,6 +22,8 @@ pub struct LoadedCase {
     /// The case; outline and joints of the geometry file and the rows of records are part of it, and the keys of those
     /// files are empty.
     pub case: Case,
+    /// The case before its dips, patterns and ratios were worked out, for those who show what was typed.
+    pub typed: Case,
     /// Where each value came from.
     pub source: CaseSource,
     /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
@@ -44,6 +46,7 @@ impl LoadedCase {
     }
 
     fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
+        let typed = case.clone();
         let told = case.expand().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
         warnings.extend(told.notes);
         source.origins = told.origins;
@@ -51,7 +54,7 @@ impl LoadedCase {
         case.validate().map_err(located)?;
         let hash = case.fingerprint().map_err(located)?;
         let settings = source.settings.values().cloned().collect();
-        Ok(Self { case, source, hash, warnings, settings })
+        Ok(Self { case, typed, source, hash, warnings, settings })
     }
 
     /// Builds the model of the case for a host that drives it.

@@ -6,16 +6,27 @@ use std::path::Path;
 
 use enmm::engine_version;
 use enmm::model::case::{Ensemble, EnsembleOutput};
-use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, wilson};
+use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, standard_deviation, wilson};
 use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, write_atomic};
-use enmm_picture::{histogram_picture, number_text};
+use enmm_picture::{Fit, histogram_picture, three_digits};
 use serde_json::{Value as Json, json};
 
 use super::{CONFIDENCE, EnsembleError, EnsembleOptions, columns};
+use crate::input::input_record;
 
 /// Shares of the samples for which quantiles are given.
 const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// An output in words of readers who do not know limit analysis.
+fn output_name(output: EnsembleOutput) -> &'static str {
+    match output {
+        EnsembleOutput::FactorOfSafety => "factor of safety",
+        EnsembleOutput::LevelTops => "factor of safety by limit analysis",
+        EnsembleOutput::Associated => "upper bound of the factor of safety by limit analysis",
+        EnsembleOutput::Failure => "estimate of the factor of safety",
+    }
+}
 
 /// The samples that have an answer, and what follows from them.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +101,14 @@ impl EnsembleResult {
         mean(&self.outputs)
     }
 
+    /// The distribution with mean and standard deviation of the outputs: lognormal where all are above 0. None where
+    /// they are all alike.
+    pub fn fit(&self) -> Option<Fit> {
+        let (mean, sd) = (self.mean(), standard_deviation(&self.outputs));
+        let is_lognormal = self.outputs.iter().all(|output| *output > 0.0);
+        (sd > 0.0).then_some(Fit { is_lognormal, mean, sd })
+    }
+
     /// Shares of the samples, with the output below which each share is.
     pub fn quantiles(&self) -> [(f64, f64); 3] {
         SHARES.map(|share| (share, quantile(&self.outputs, share)))
@@ -114,18 +133,25 @@ impl EnsembleResult {
         let directory = &options.directory;
         self.write_table(&directory.join("ensemble.csv"))?;
         let Interval { low, high } = self.interval();
+        let percent = |share: f64| format!("{} %", three_digits(100.0 * share));
+        let beta = match beta(self.probability_of_failure()) {
+            beta if beta.is_finite() => format!(", β {}", three_digits(beta)),
+            _ => String::new(),
+        };
         let caption = format!(
-            "{} samples, {} below {}: probability of failure {}, 95 % from {} to {}",
+            "{} samples, {} below {}: probability of failure {}, 95 % interval {} to {}{beta}; seed {}",
             self.outputs.len(),
             self.failures(),
-            number_text(self.ensemble.limit),
-            number_text(self.probability_of_failure()),
-            number_text(low),
-            number_text(high)
+            three_digits(self.ensemble.limit),
+            percent(self.probability_of_failure()),
+            percent(low),
+            percent(high),
+            self.ensemble.seed
         );
-        let name = columns(self.ensemble.output)[0].replace('_', " ");
-        let picture = histogram_picture(&loaded.case.title, &caption, &name, &self.outputs, self.ensemble.limit);
-        picture.write_png(&directory.join("ensemble.png"))?;
+        let name = output_name(self.ensemble.output);
+        let (outputs, limit) = (&self.outputs, self.ensemble.limit);
+        let picture = histogram_picture(&loaded.case.title, &caption, name, outputs, limit, self.fit());
+        picture.write(directory, "ensemble")?;
         let path = directory.join("ensemble.json");
         let record = self.record(loaded, options, wall);
         let text = serde_json::to_vec_pretty(&record).map_err(io::Error::from).map_err(at_path(&path))?;
@@ -181,8 +207,11 @@ impl EnsembleResult {
             "beta": beta(self.probability_of_failure()),
             "beta_interval": [beta(high), beta(low)],
             "mean": self.mean(),
+            "standard_deviation": standard_deviation(&self.outputs),
+            "fit": self.fit().map(|fit| if fit.is_lognormal { "lognormal" } else { "normal" }),
             "quantiles": self.quantiles().map(|(share, output)| [share, output]),
             "rank_correlation": self.sensitivity().into_iter().collect::<BTreeMap<_, _>>(),
+            "input": input_record(loaded),
             "wall_seconds": wall,
         })
     }

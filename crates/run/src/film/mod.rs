@@ -214,6 +214,7 @@ fn quantity<'a>(name: &'a str, unit: &str) -> &'a str {
     match (name, unit) {
         (_, "m/s") => "Velocity",
         (_, "J/m") => "Energy",
+        (_, "N") => "Tension of a bar",
         ("penetration_max", _) => "Largest penetration",
         (_, "m") => "Displacement",
         ("locked" | "slipping", _) => "Contacts",

@@ -11,6 +11,7 @@ use crate::blocks::write_blocks;
 use crate::film::{Film, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
+use crate::input::input_record;
 use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
@@ -347,7 +348,9 @@ impl<'a> Driver<'a> {
     ) -> Result<(), RunError> {
         let after = rows::monitors(&self.simulation);
         let dt = [dt_before, self.simulation.model().dt];
-        let row = rows::row(self.simulation.state().stage, report, before, &after, dt, sweeps_mean);
+        let tensions = rows::tensions(&self.simulation);
+        let stage = self.simulation.state().stage;
+        let row = rows::row(stage, report, before, &after, dt, sweeps_mean, &tensions);
         self.history.row(&row).and_then(|()| self.film.row(&row)).map_err(RunError::Output)
     }
 
@@ -544,6 +547,7 @@ impl<'a> Driver<'a> {
             ledger: &self.progress.ledger,
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),
+            input: input_record(self.loaded),
             doubt,
         };
         let summary = Summary::new(&self.simulation, record);

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use enmm::geometry::{Point, Vector};
-use enmm::model::case::PictureKind;
+use enmm::model::case::{PictureKind, StageKind};
 use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, copy_file};
 use enmm_observe::{Joints, Polygons, Snapshot, moved_since, references, water_surface};
@@ -16,7 +16,7 @@ use enmm_picture::{
 };
 use enmm_report::FILM;
 
-use super::rows;
+use super::rows::{self, Histories};
 use crate::folder::{FRAMES, make_frames};
 use crate::vtu::PARTS;
 
@@ -49,7 +49,7 @@ pub fn clear(directory: &Path) -> io::Result<()> {
 /// Pictures of ends of stages in a directory, such as `stage1_joints.png`.
 fn stage_pictures(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let is_one = |name: &str| {
-        let rest = name.strip_prefix("stage").and_then(|rest| rest.strip_suffix(".png"));
+        let rest = name.strip_prefix("stage").and_then(|rest| rest.strip_suffix(".png").or(rest.strip_suffix(".svg")));
         rest.and_then(|rest| rest.split_once('_')).is_some_and(|(number, kind)| {
             let kinds = STAGE_PICTURES.iter().flat_map(|(_, names)| names.iter());
             number.parse::<u32>().is_ok() && kinds.into_iter().any(|name| *name == kind)
@@ -126,13 +126,13 @@ pub fn draw_model(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     if pictures.include(PictureKind::Covers) {
         let annotations = model_annotations(simulation);
         let picture = covers_picture(&Snapshot::of(simulation), &annotations, &stars(simulation));
-        picture.write_png(&directory.join("covers.png"))?;
+        picture.write(directory, "covers")?;
     }
     Ok(())
 }
 
 fn draw_slope(simulation: &Simulation, directory: &Path) -> io::Result<()> {
-    model_picture(&Snapshot::of(simulation), &model_annotations(simulation)).write_png(&directory.join("model.png"))
+    model_picture(&Snapshot::of(simulation), &model_annotations(simulation)).write(directory, "model")
 }
 
 /// Draws a model that is only looked at into a directory: `model.png`, and `covers.png` if the case requests it.
@@ -151,11 +151,15 @@ pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
     let case = simulation.case();
     if case.output.pictures.include(PictureKind::Deformed) {
         let snapshot = Snapshot::of(simulation);
-        displacement_picture(&snapshot, &case.title, &outline(case)).write_png(&directory.join("deformed.png"))?;
+        displacement_picture(&snapshot, &case.title, &outline(case)).write(directory, "deformed")?;
     }
-    if case.output.pictures.include(PictureKind::History) {
-        let (series, stages) = rows::series(&directory.join("history.csv"), case)?;
-        history_picture(&case.title, &series, &stages).write_png(&directory.join("history.png"))?;
+    let kinds = [PictureKind::History, PictureKind::Energy].map(|kind| case.output.pictures.include(kind));
+    if kinds.contains(&true) {
+        let Histories { series, energies, stages } = rows::histories(&directory.join("history.csv"), case)?;
+        let all = [("history", series), ("energy", energies)].into_iter().zip(kinds).filter(|(_, wanted)| *wanted);
+        for ((name, series), _) in all {
+            history_picture(&case.title, &series, &stages).write(directory, name)?;
+        }
     }
     Ok(())
 }
@@ -170,7 +174,12 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
     let snapshot = Snapshot::of(simulation);
     let (bolts, water) = (bolt_marks(simulation), water_surface(simulation));
     let number = simulation.state().stage + 1;
-    let caption = format!("stage {number}, {}, t = {} s", simulation.stage().name, number_text(snapshot.time));
+    let stage = simulation.stage();
+    let time = match stage.kind {
+        StageKind::Static => String::new(),
+        StageKind::Dynamic => format!(", t = {} s", number_text(snapshot.time)),
+    };
+    let caption = format!("stage {number}, {}{time}", stage.name);
     let stage =
         StageEnd { title: &simulation.case().title, caption, snapshot: &snapshot, bolts: &bolts, water: &water };
     for (kind, names) in STAGE_PICTURES.into_iter().filter(|(kind, _)| pictures.include(*kind)) {
@@ -187,10 +196,14 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
             PictureKind::Stress => vec![stress_picture(&stage)],
             PictureKind::Velocity => vec![velocity_picture(&stage)],
-            PictureKind::Model | PictureKind::Deformed | PictureKind::History | PictureKind::Covers => Vec::new(),
+            PictureKind::Model
+            | PictureKind::Deformed
+            | PictureKind::History
+            | PictureKind::Energy
+            | PictureKind::Covers => Vec::new(),
         };
         for (picture, name) in pictures.iter().zip(names) {
-            picture.write_png(&directory.join(format!("stage{number}_{name}.png")))?;
+            picture.write(directory, &format!("stage{number}_{name}"))?;
         }
     }
     Ok(())

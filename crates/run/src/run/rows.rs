@@ -4,10 +4,10 @@ use std::io;
 use std::path::Path;
 
 use enmm::geometry::Vector;
-use enmm::model::case::StageKind;
+use enmm::model::case::{Axis, BaseMotionKind, StageKind};
 use enmm::model::settle::REST_STEPS;
 use enmm::model::{Case, Simulation, StepReport};
-use enmm_observe::{ENERGIES, REPORT_QUANTITIES};
+use enmm_observe::{ENERGIES, REPORT_QUANTITIES, bolts};
 use enmm_picture::{Series, StageStart};
 
 /// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
@@ -18,8 +18,14 @@ const FRAMES: [f64; 2] = [20.0, 2.0];
 /// Least and most frames of the film of a dynamic stage, and those of a doubling of the steps of a static one.
 const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
 
-/// Quantity of the energies in the picture of the histories.
+/// More bolts than this have one column, with the largest tension of all.
+const BOLTS_MAX: usize = 50;
+/// End of the name of the column of a bolt.
+const TENSION: &str = "_tension";
+/// Quantity of the energies in their picture.
 const ENERGY: &str = "energy";
+/// Quantity of the velocities of monitors in the picture of the histories.
+const VELOCITY: &str = "velocity";
 /// Part of the largest energy below which an energy is left out of the picture.
 const SMALL: f64 = 0.01;
 
@@ -126,7 +132,31 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
     columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
     columns.extend(REPORT_QUANTITIES.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
     columns.push(("sweeps_mean".to_owned(), ""));
+    columns.extend(bolt_columns(case).into_iter().map(|name| (name, "N")));
     columns
+}
+
+/// Names of the columns of bolts: one for each, or one for all where they are many.
+fn bolt_columns(case: &Case) -> Vec<String> {
+    let own = |(k, bolt): (usize, &enmm::model::case::Bolt)| match &bolt.name {
+        Some(name) => format!("bolt_{name}{TENSION}"),
+        None => format!("bolt_{}{TENSION}", k + 1),
+    };
+    match case.bolts.len() {
+        0..=BOLTS_MAX => case.bolts.iter().enumerate().map(own).collect(),
+        _ => vec![format!("bolts_largest{TENSION}")],
+    }
+}
+
+/// Largest tension (N) along one bar of each bolt, 0 before it is installed; the values of [`bolt_columns`].
+pub fn tensions(simulation: &Simulation) -> Vec<f64> {
+    let case = simulation.case();
+    let mut all = vec![0.0; case.bolts.len()];
+    for line in bolts(simulation) {
+        let k = line.bolt as usize;
+        all[k] = f64::max(all[k], line.force * case.bolts[k].spacing);
+    }
+    if all.len() > BOLTS_MAX { vec![all.into_iter().fold(0.0, f64::max)] } else { all }
 }
 
 /// Displacement and velocity of all monitors.
@@ -135,7 +165,8 @@ pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
 }
 
 /// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
-/// step before (s). Velocities, which live halfway between, are brought to the time of the row.
+/// step before (s), `tensions` those of the bolts at its end. Velocities, which live halfway between, are brought to
+/// the time of the row.
 pub fn row(
     stage: u32,
     report: &StepReport,
@@ -143,6 +174,7 @@ pub fn row(
     after: &[(Vector, Vector)],
     [dt_before, dt]: [f64; 2],
     sweeps_mean: f64,
+    tensions: &[f64],
 ) -> Vec<f64> {
     let mut row = vec![report.time, f64::from(stage + 1)];
     for ((u, v), (_, v_after)) in before.iter().zip(after) {
@@ -152,15 +184,25 @@ pub fn row(
     row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
     row.extend(REPORT_QUANTITIES.iter().map(|quantity| (quantity.get)(report)));
     row.push(sweeps_mean);
+    row.extend(tensions);
     row
 }
 
-/// The series that the picture of the histories shows, and the stages, read back from `history.csv`: displacements of
-/// monitors, and the energies that are not small beside the largest.
+/// What the pictures of the histories show.
+pub struct Histories {
+    /// Displacement of monitors; their velocity in dynamic stages, the motion of the base, tension of bolts.
+    pub series: Vec<Series>,
+    /// Energies that are not small beside the largest.
+    pub energies: Vec<Series>,
+    /// Stages that have rows.
+    pub stages: Vec<StageStart>,
+}
+
+/// Series and stages, read back from `history.csv`.
 ///
 /// # Errors
 /// Whatever the file system refuses, or what is not a table of numbers.
-pub fn series(path: &Path, case: &Case) -> io::Result<(Vec<Series>, Vec<StageStart>)> {
+pub fn histories(path: &Path, case: &Case) -> io::Result<Histories> {
     let mut reader = csv::Reader::from_path(path)?;
     let headers = reader.headers()?.clone();
     // Terms of the balance that stand behind the residual are left to readers of the table.
@@ -175,30 +217,84 @@ pub fn series(path: &Path, case: &Case) -> io::Result<(Vec<Series>, Vec<StageSta
         let number = |k: usize| record.get(k).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN);
         let stage = number(1) as usize;
         if stage > stages.len() {
-            let name = case.stages.get(stage - 1).map_or(String::new(), |stage| stage.name.clone());
+            let of_case = case.stages.get(stage - 1);
+            let name = of_case.map_or(String::new(), |stage| stage.name.clone());
             // The row at the start of a later stage is that of the end of the stage before.
-            stages.push(StageStart { name, time: if stages.is_empty() { number(0) } else { last } });
+            let time = if stages.is_empty() { number(0) } else { last };
+            stages.push(StageStart { name, time, is_static: of_case.is_none_or(|s| s.kind == StageKind::Static) });
         }
         last = number(0);
+        let is_static = stages.last().is_none_or(|stage| stage.is_static);
         for (k, series) in &mut series {
-            series.points.push((number(0), number(*k)));
+            let hidden = is_static && series.quantity == VELOCITY;
+            series.points.push((number(0), if hidden { f64::NAN } else { number(*k) }));
         }
     }
+    let (energies, mut series): (Vec<_>, Vec<_>) =
+        series.into_iter().map(|(_, series)| series).partition(|series| series.quantity == ENERGY);
+    series.retain(|series| series.quantity != VELOCITY || series.points.iter().any(|point| point.1.is_finite()));
+    series.extend(base_motions(case, &stages, last));
     let size = |series: &Series| series.points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
-    let energies = series.iter().filter(|(_, series)| series.quantity == ENERGY);
-    let least = SMALL * energies.map(|(_, series)| size(series)).fold(0.0, f64::max);
-    let matters = |series: &Series| series.quantity != ENERGY || (size(series) > 0.0 && size(series) >= least);
-    Ok((series.into_iter().map(|(_, series)| series).filter(matters).collect(), stages))
+    let least = SMALL * energies.iter().map(size).fold(0.0, f64::max);
+    let energies = energies.into_iter().filter(|series| size(series) > 0.0 && size(series) >= least).collect();
+    Ok(Histories { series, energies, stages })
 }
 
-/// The empty series of a column; none if the picture leaves it out.
+/// The motion of the base from the stage on with which it begins, in dynamic stages.
+fn base_motions(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
+    let motion = |base: &enmm::model::case::BaseMotion| {
+        let start = stages.get(case.motion_stage(base.stage.as_deref())?)?.time;
+        let is_dynamic = |time: f64| stages.iter().rev().find(|stage| stage.time <= time).is_some_and(|s| !s.is_static);
+        let rows = base.table.as_ref()?.iter().map(|[time, value]| (start + time, base.scale * value));
+        let points: Vec<(f64, f64)> = rows.filter(|(time, _)| *time <= end && is_dynamic(*time)).collect();
+        let (quantity, unit) = match base.kind {
+            BaseMotionKind::Acceleration => ("base acceleration", "m/s²"),
+            BaseMotionKind::Velocity => ("base velocity", "m/s"),
+        };
+        let name = if base.axis == Axis::X { "base x" } else { "base y" };
+        (!points.is_empty()).then(|| Series {
+            name: name.to_owned(),
+            quantity: quantity.to_owned(),
+            unit: unit.to_owned(),
+            points,
+        })
+    };
+    case.base_motions.iter().filter_map(motion).chain(waves(case, stages, end)).collect()
+}
+
+/// Particle velocities of the waves that come in through quiet boundaries.
+fn waves(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
+    let of = |quiet: &enmm::model::case::Quiet| -> Option<Vec<Series>> {
+        let start = stages.get(case.motion_stage(quiet.stage.as_deref())?)?.time;
+        let (wave, rows) = (quiet.wave?, quiet.table.as_ref()?);
+        let series = |(name, part): (&str, f64)| Series {
+            name: name.to_owned(),
+            quantity: "incoming wave".to_owned(),
+            unit: "m/s".to_owned(),
+            points: rows
+                .iter()
+                .map(|[time, factor]| (start + time, quiet.scale * factor * part))
+                .filter(|(time, _)| *time <= end)
+                .collect(),
+        };
+        let parts = [("wave x", wave[0]), ("wave y", wave[1])].into_iter().filter(|(_, part)| *part != 0.0);
+        Some(parts.map(series).filter(|series| !series.points.is_empty()).collect())
+    };
+    case.quiets.iter().filter_map(of).flatten().collect()
+}
+
+/// The empty series of a column; none if the pictures leave it out.
 fn pictured_series(header: &str, energies: &[&str]) -> Option<Series> {
     let (column, unit) = header.strip_suffix(']')?.rsplit_once(" [")?;
     let of = |name: String, quantity: &str| {
         Some(Series { name, quantity: quantity.to_owned(), unit: unit.to_owned(), points: Vec::new() })
     };
     match column.rsplit_once('_') {
-        Some((monitor, part @ ("ux" | "uy"))) if unit == "m" => of(format!("{monitor} {part}"), "displacement"),
+        Some((monitor, "ux")) if unit == "m" => of(format!("{monitor} x"), "displacement"),
+        Some((monitor, "uy")) if unit == "m" => of(format!("{monitor} y"), "displacement"),
+        Some((monitor, "vx")) if unit == "m/s" => of(format!("{monitor} x"), VELOCITY),
+        Some((monitor, "vy")) if unit == "m/s" => of(format!("{monitor} y"), VELOCITY),
+        Some((bolt, "tension")) if unit == "N" => of(bolt.replace('_', " "), "tension of a bar"),
         _ if unit == "J/m" && energies.contains(&column) => of(column.replace('_', " "), ENERGY),
         _ => None,
     }

@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 use enmm::model::case::key::Key;
-use enmm::model::case::{Axes, Case, Invalid, JointLawKind, LoadKind, Plane, Port, Solver, StageKind};
+use enmm::model::case::{Axes, Case, Invalid, JointLawKind, LoadKind, Plane, Port, Solver, StageKind, Support};
 
 use crate::{left_out_stages, with_support_forces};
 
@@ -22,6 +22,8 @@ pub fn staged(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
 pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     case.validate()?;
     let mut case = with_support_forces(case);
+    let active = case.bolts.iter_mut().filter(|bolt| bolt.support == Some(Support::Active));
+    active.for_each(|bolt| bolt.yield_force = Some(bolt.pretension));
     // No step is taken, so the integrator and its keys do not matter.
     let Solver { integrator, newmark, implicit_step, iterations_max, displacement_ratio, .. } = Solver::default();
     case.solver = Solver { integrator, newmark, implicit_step, iterations_max, displacement_ratio, ..case.solver };

@@ -1,0 +1,66 @@
+//! `enmm report`: results on paper, as HTML that prints on A4 and as PDF.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use enmm_io::files::remove_if_there;
+use enmm_paper::{Converter, REPORT, REPORT_PDF, Records, write_report};
+use enmm_run::Folder;
+
+use crate::{BAD_INPUT, FAILED, fail, print_line};
+
+/// Arguments of `enmm report`.
+#[derive(Args)]
+pub struct Arguments {
+    /// Directory of results of enmm run, fos, bound or sample; those in its directories fos, bound and sample count
+    /// too.
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+    /// Write no PDF.
+    #[arg(long, conflicts_with = "converter")]
+    no_pdf: bool,
+    /// Program that makes the PDF: a browser of the family of Chromium, weasyprint or wkhtmltopdf. Default: the first
+    /// that is installed.
+    #[arg(long, value_name = "PROGRAM")]
+    converter: Option<PathBuf>,
+}
+
+/// Writes the report of a folder of results into it.
+pub fn report(arguments: &Arguments) -> ExitCode {
+    let Arguments { directory, no_pdf, converter } = arguments;
+    let records = match Records::read(directory) {
+        Ok(records) => records,
+        Err(error) => return fail(&error, BAD_INPUT),
+    };
+    let refuse = |error| fail(&format!("cannot write the report ({error}): make the directory writable"), BAD_INPUT);
+    let _held = match Folder::open(directory, &[]) {
+        Ok(held) => held,
+        Err(error) => return refuse(error),
+    };
+    let pdf = directory.join(REPORT_PDF);
+    // A PDF of an earlier report would be taken for that of this one.
+    let written = remove_if_there(&pdf).and_then(|()| write_report(directory, &records));
+    let page = match written {
+        Ok(page) => page,
+        Err(error) => return refuse(error),
+    };
+    print_line(&format!("{:<20} {}", "report", page.display()));
+    if *no_pdf {
+        return ExitCode::SUCCESS;
+    }
+    let Some(program) = converter.as_deref().map(Converter::named).or_else(Converter::find) else {
+        print_line(&format!(
+            "no PDF: no Chromium, Chrome, Edge, weasyprint or wkhtmltopdf is installed; print {REPORT} from a browser, \
+             or name a program by --converter"
+        ));
+        return ExitCode::SUCCESS;
+    };
+    match program.convert(&page, &pdf) {
+        Ok(()) => {
+            print_line(&format!("{:<20} {}", "PDF", pdf.display()));
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error, FAILED),
+    }
+}

@@ -1,0 +1,114 @@
+//! Claim: `enmm report` prints what lies in a folder of results; all its numbers stand in the records there; the table
+//! `[report]` changes neither the fingerprint of a case nor its results.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{Place, incline};
+
+const NOTES: &str = "[report]\nproject = \"Quarry North\"\nauthor = \"R. Ock\"\n[section]\nazimuth_deg = 75\n";
+
+fn record(place: &Place, name: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(place.path(name)).expect("a record")).expect("JSON")
+}
+
+/// All numbers of a record.
+fn numbers(value: &Value, into: &mut Vec<f64>) {
+    match value {
+        Value::Number(number) => into.extend(number.as_f64()),
+        Value::Array(list) => list.iter().for_each(|value| numbers(value, into)),
+        Value::Object(map) => map.values().for_each(|value| numbers(value, into)),
+        _ => {}
+    }
+}
+
+/// The text of the tables without the numbers of records and without heads: what digits it has are names.
+fn words_of_cells(html: &str) -> String {
+    let cells = html.split("<td").skip(1).filter_map(|cell| cell.split_once('>')?.1.split("</td>").next());
+    let without = |cell: &str| {
+        let parts = cell.split("<data").enumerate();
+        let words = parts.map(|(k, part)| if k == 0 { part } else { part.split("</data>").nth(1).unwrap_or_default() });
+        words.collect::<String>()
+    };
+    cells.map(without).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn all_results_of_a_case_are_printed_with_the_numbers_of_their_records() {
+    let place = Place::with(&incline(0.65, NOTES));
+    for arguments in [&["run", "case.toml"][..], &["fos", "case.toml"], &["bound", "case.toml"]] {
+        assert_eq!(place.enmm(arguments).status, Some(0), "{arguments:?}");
+    }
+    let answer = place.enmm(&["report", "case", "--no-pdf"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("report_a4.html"), "{answer:?}");
+    let html = fs::read_to_string(place.path("case/report_a4.html")).expect("the report");
+    let mut known = Vec::new();
+    for name in ["case/summary.json", "case/fos/fos.json", "case/bound/bound.json"] {
+        numbers(&record(&place, name), &mut known);
+    }
+    let shown: Vec<&str> = html.split("<data value=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert!(shown.len() > 60, "{}", shown.len());
+    for value in shown {
+        assert!(known.contains(&value.parse().expect("a number")), "{value}");
+    }
+    let fingerprint = record(&place, "case/summary.json")["case_hash"].as_str().expect("a hash").to_owned();
+    let words =
+        words_of_cells(&html).replace(&fingerprint, "").replace(&format!("enmm {}", env!("CARGO_PKG_VERSION")), "");
+    let stray: Vec<&str> = words.lines().filter(|line| line.contains(|c: char| c.is_ascii_digit())).collect();
+    assert!(stray.is_empty(), "numbers that are none of a record: {stray:?}");
+    for text in
+        ["Quarry North", "Factor of safety F", "Limit analysis", "Case file", "Probability of failure: enmm sample"]
+    {
+        assert!(html.contains(text), "{text}");
+    }
+    let letters: Vec<String> = html.split(|c: char| !c.is_alphabetic()).map(str::to_lowercase).collect();
+    assert!(!letters.iter().any(|word| ["cover", "covers", "star", "stars", "ledger"].contains(&word.as_str())));
+    assert_eq!(html.matches("<img").count(), pictures(&place.path("case")), "all pictures that a report shows");
+}
+
+/// Pictures in a folder of a run and its search that a report shows.
+fn pictures(folder: &Path) -> usize {
+    let names = |folder: &Path| -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        entries.map(|name| name.to_string_lossy().into_owned()).filter(|name| name.ends_with(".svg")).collect()
+    };
+    let shown = names(folder).into_iter().chain(names(&folder.join("fos"))).filter(|name| name != "deformed.svg");
+    shown.count()
+}
+
+#[test]
+fn the_notes_of_a_report_are_no_part_of_the_case() {
+    let [with, without] = [NOTES, ""].map(|notes| Place::with(&incline(0.65, notes)));
+    let bound = |place: &Place| {
+        assert_eq!(place.enmm(&["bound", "case.toml"]).status, Some(0));
+        record(place, "case/bound/bound.json")
+    };
+    let [with, without] = [&with, &without].map(bound);
+    assert_eq!(with["case_hash"], without["case_hash"]);
+    assert_eq!(with["bound"], without["bound"]);
+    assert_eq!(with["input"]["report"]["author"], "R. Ock");
+    assert_eq!(without["input"]["report"], serde_json::json!({}));
+}
+
+#[test]
+fn notes_that_say_nothing_and_folders_without_results_are_refused() {
+    let place = Place::with(&incline(0.65, "[report]\nauthor = \" \"\n"));
+    place.enmm(&["bound", "case.toml"]).assert_bad_input(&["report.author: is empty, must say something"]);
+    let place = Place::with(&incline(0.65, ""));
+    place.enmm(&["report", "nowhere"]).assert_bad_input(&["nowhere is no directory"]);
+    place.enmm(&["report", "."]).assert_bad_input(&["holds no results", "fos.json (enmm fos)", "with -o ."]);
+}
+
+/// A converter that is not there leaves the page, and says what to do.
+#[test]
+fn a_converter_that_does_not_start_is_named() {
+    let place = Place::with(&incline(0.65, ""));
+    assert_eq!(place.enmm(&["bound", "case.toml"]).status, Some(0));
+    let answer = place.enmm(&["report", "case", "--converter", "no_such_program"]);
+    assert_eq!(answer.status, Some(3), "{answer:?}");
+    assert!(answer.stderr.contains("no_such_program"), "{answer:?}");
+    assert!(place.path("case/report_a4.html").is_file() && !place.path("case/report_a4.pdf").exists());
+}

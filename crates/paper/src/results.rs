@@ -1,0 +1,270 @@
+//! Results: stages of a run, factor of safety, limit analysis, probability of failure.
+
+use serde_json::Value;
+
+use crate::input::bolt_name;
+use crate::number::{Digits, length, mass, percent, plain, prefixed};
+use crate::parts::{chapter, entries, figure, part, plain_words, text};
+use crate::records::{Record, Records};
+use crate::table::{Cell, facts, paragraph, table};
+
+use Digits::Three;
+
+/// How F is to be read.
+const CONVENTION: &str = "\
+    F is the number by which the strength of the joints (cohesion, tan φ and tensile strength, peak and \
+    residual) and of rock that yields is divided when the slope just stands. Weights, water, loads and \
+    bolts are not divided: active bolts carry their pretension, passive ones their yield force, and \
+    others what the motion of the rock brings to them, up to their yield force. All trials start from \
+    one state of rest. A slope that slides and is caught by other blocks does not count as stable.";
+
+/// Stages, histories, and bolts at the end of a run.
+pub fn run_chapter(records: &Records) -> String {
+    let Some(run) = &records.run else { return String::new() };
+    let row = |stage: &Value| -> Vec<Cell> {
+        let is_dynamic = text(&stage["kind"]) == "dynamic";
+        let time = if is_dynamic { plain(&stage["time"], "s", Three).into() } else { Cell::Empty };
+        let end = match stage["converged"].as_bool() {
+            Some(true) => "at rest".into(),
+            Some(false) => "NOT at rest".into(),
+            None => Cell::from("end of its duration"),
+        };
+        vec![text(&stage["name"]).into(), text(&stage["kind"]).into(), end, time]
+    };
+    let rows: Vec<Vec<Cell>> = entries(&run.json["stages"]).iter().map(row).collect();
+    let size = facts(&[
+        ("Blocks", plain(&run.json["model"]["blocks"], "", Digits::Typed).into()),
+        ("Area of rock", plain(&run.json["model"]["area"], "m²", Three).into()),
+        ("Mesh size", length(&run.json["model"]["mesh_size"], Three).into()),
+    ]);
+    let stages = table(&["Stage", "Kind", "Ended", "Time"], &rows);
+    let bolts = bolts(&run.json["bolts"], run);
+    let histories = figure(run, "history", "Monitors, bolts and motion of the base over the stages.");
+    let content = [
+        part("Stages as they went", &stages),
+        size,
+        part("Bolts at the end of the run", &bolts),
+        part("Histories", &histories),
+        part("Ends of the stages", &stage_figures(run)),
+    ];
+    chapter("Run of the stages", &content.concat())
+}
+
+/// Pictures of the ends of the stages.
+fn stage_figures(run: &Record) -> String {
+    let kinds = [
+        ("displacement_contours", "displacement since the start of the stage"),
+        ("joints", "joints that lock, slip and are open"),
+        ("mean_stress_contours", "mean stress"),
+    ];
+    let of_stage = |(k, stage): (usize, &Value)| {
+        let name = text(&stage["name"]);
+        let picture = |(kind, what): &(&str, &str)| {
+            figure(run, &format!("stage{}_{kind}", k + 1), &format!("Stage {}, {name}: {what}.", k + 1))
+        };
+        kinds.iter().map(picture).collect::<String>()
+    };
+    entries(&run.json["stages"]).iter().enumerate().map(of_stage).collect()
+}
+
+/// Bolts one by one: the largest tension along each, in percent of its yield force.
+fn bolts(records: &Value, of: &Record) -> String {
+    let designed = entries(&of.json["input"]["bolts"]);
+    let row = |(k, bolt): (usize, &Value)| -> Option<Vec<Cell>> {
+        let own = entries(records).iter().filter(|record| record["bolt"].as_u64() == Some(k as u64));
+        let force = |record: &&Value| record["force"].as_f64().unwrap_or_default();
+        let largest = own.max_by(|a, b| force(a).total_cmp(&force(b)))?;
+        let state = match text(&largest["state"]) {
+            "absent" => "not installed",
+            "yielded" => "yields",
+            state => state,
+        };
+        Some(vec![
+            bolt_name(bolt, k),
+            prefixed(&largest["force"], "N", Three).into(),
+            prefixed(&bolt["yield_force"], "N", Digits::Typed).into(),
+            percent(&largest["utilisation"]).into(),
+            state.into(),
+        ])
+    };
+    let rows: Vec<Vec<Cell>> = designed.iter().enumerate().filter_map(row).collect();
+    table(&["Bolt", "Largest tension of a bar", "Yield force", "Tension over yield force", "State"], &rows)
+}
+
+/// The factor of safety, or the bound on it that was found.
+pub fn factor_cell(json: &Value) -> Cell {
+    let found = plain(&json["factor_of_safety"], "", Three);
+    let least = plain(&json["at_least"], "", Three).map(|least| Cell::Mixed(vec![("at least ".to_owned(), least)]));
+    match (found, least) {
+        (Some(found), _) => found.into(),
+        (None, Some(least)) => least,
+        (None, None) => "not found".into(),
+    }
+}
+
+/// A factor of limit analysis with the side on which it lies.
+fn side(factor: &Value) -> Cell {
+    let Some(limit) = plain(&factor["limit"], "", Three) else { return Cell::Empty };
+    let before = match text(&factor["end"]) {
+        "at_least" => "at least ",
+        "at_most" => "at most ",
+        _ => "",
+    };
+    Cell::Mixed(vec![(before.to_owned(), limit)])
+}
+
+/// The factor of limit analysis that bounds that of strength reduction, or why there is none.
+pub fn limit_factor(bound: &Value) -> Cell {
+    let refused = text(&bound["refused"]);
+    match (side(&bound["level_tops"]), side(&bound["lower"]), side(&bound["upper"])) {
+        _ if !refused.is_empty() => Cell::from(format!("none: {}", plain_words(refused))),
+        (Cell::Empty, Cell::Mixed(mut lower), Cell::Mixed(upper)) => {
+            lower.extend(upper.into_iter().map(|(before, number)| (format!(" to {before}"), number)));
+            Cell::Mixed(lower)
+        }
+        (level, ..) => level,
+    }
+}
+
+/// F with its convention, what fails, trials, bolts.
+pub fn factor_chapter(records: &Records) -> String {
+    let Some(fos) = &records.fos else { return String::new() };
+    let json = &fos.json;
+    let (failing, bracket) = (&json["failing"], &json["bracket"]);
+    let fate = match text(&failing["verdict"]) {
+        "caught" => "slides and is caught".into(),
+        "unstable" => "goes on moving".into(),
+        _ => Cell::Empty,
+    };
+    let rows = [
+        ("Factor of safety F", factor_cell(json)),
+        ("Greatest F at which the slope stands", plain(&bracket["stable"], "", Digits::Typed).into()),
+        ("Least F at which it does not", plain(&bracket["unstable"], "", Digits::Typed).into()),
+        ("Factor by limit analysis", limit_factor(&json["bound"])),
+        ("Blocks that fail", plain(&failing["blocks"], "", Digits::Typed).into()),
+        ("What they do", fate),
+        ("Area that fails", plain(&failing["area"], "m²", Three).into()),
+        ("Mass that fails", mass(&failing["mass"]).into()),
+        ("Share of the free rock", percent(&failing["share"]).into()),
+    ];
+    let content = [
+        paragraph(CONVENTION),
+        facts(&rows),
+        figure(fos, "failure", "Rock that fails at the least F at which the slope does not stand."),
+        part("Other ways to fail", &mechanisms(json)),
+        part("Bolts as the rock fails", &bolts(&json["bolts"], fos)),
+        part("Trials", &(figure(fos, "fos", "Largest displacement of each trial.") + &trials(json))),
+    ];
+    chapter("Factor of safety", &content.concat())
+}
+
+/// All mechanisms, where more than one was found.
+fn mechanisms(json: &Value) -> String {
+    let all = entries(&json["mechanisms"]);
+    let row = |(k, search): (usize, &Value)| -> Vec<Cell> {
+        let failing = &search["failing"];
+        vec![
+            Cell::from(format!("{}", k + 1)),
+            factor_cell(search),
+            plain(&failing["blocks"], "", Digits::Typed).into(),
+            plain(&failing["area"], "m²", Three).into(),
+            mass(&failing["mass"]).into(),
+            if search["counts"] == Value::Bool(false) { "too small to count".into() } else { Cell::Empty },
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = all.iter().enumerate().map(row).collect();
+    let head = ["Mechanism", "F", "Blocks", "Area", "Mass", "Remark"];
+    if rows.len() > 1 { table(&head, &rows) } else { String::new() }
+}
+
+fn trials(json: &Value) -> String {
+    let row = |trial: &Value| -> Vec<Cell> {
+        vec![
+            plain(&trial["factor"], "", Digits::Typed).into(),
+            text(&trial["verdict"]).into(),
+            length(&trial["displacement"], Three).into(),
+            plain(&trial["failing_blocks"], "", Digits::Typed).into(),
+            plain(&trial["failing_area"], "m²", Three).into(),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = entries(&json["trials"]).iter().map(row).collect();
+    table(&["F", "Verdict", "Largest displacement", "Blocks that fail", "Area that fails"], &rows)
+}
+
+/// Limit analysis of its own.
+pub fn bound_chapter(records: &Records) -> String {
+    let Some(record) = &records.bound else { return String::new() };
+    let bound = &record.json["bound"];
+    let rows = [
+        ("Factor by limit analysis", side(&bound["level_tops"])),
+        ("Factor if joints dilate by their friction angle", side(&bound["associated"])),
+        ("Factor if every corner holds", side(&bound["catching"])),
+        ("Lower bound", side(&bound["lower"])),
+        ("Upper bound", side(&bound["upper"])),
+        ("Blocks", plain(&bound["blocks"], "", Digits::Typed).into()),
+        ("Blocks that can move", plain(&bound["free_blocks"], "", Digits::Typed).into()),
+    ];
+    let note = "Limit analysis looks for forces between the blocks that hold the slope, without following its \
+                motion. Its factor is a second opinion: that of strength reduction should not lie above it.";
+    chapter("Limit analysis", &(paragraph(note) + &facts(&rows)))
+}
+
+/// P_f with its interval, and the random values.
+pub fn probability_chapter(records: &Records) -> String {
+    let Some(record) = &records.ensemble else { return String::new() };
+    let json = &record.json;
+    let interval = percent(&json["interval"][0]).zip(percent(&json["interval"][1]));
+    let interval =
+        interval.map_or(Cell::Empty, |(low, high)| Cell::Mixed(vec![(String::new(), low), (" to ".to_owned(), high)]));
+    let beta = plain(&json["beta"], "", Three).map_or(Cell::Empty, Cell::from);
+    let by = match text(&json["ensemble"]["output"]) {
+        "factor_of_safety" => "strength reduction of each sample",
+        _ => "limit analysis of each sample",
+    };
+    let rows = [
+        ("Probability of failure P_f", percent(&json["probability_of_failure"]).into()),
+        ("Interval of confidence", interval),
+        ("Its confidence", percent(&json["confidence"]).into()),
+        ("Reliability index β", beta),
+        ("Samples", plain(&json["samples"], "", Digits::Typed).into()),
+        ("Samples that fail", plain(&json["failures"], "", Digits::Typed).into()),
+        ("A sample fails below", plain(&json["ensemble"]["limit"], "", Digits::Typed).into()),
+        ("Factor by", by.into()),
+        ("Mean factor", plain(&json["mean"], "", Three).into()),
+        ("Standard deviation", plain(&json["standard_deviation"], "", Three).into()),
+        ("Seed", plain(&json["ensemble"]["seed"], "", Digits::Typed).into()),
+    ];
+    let picture =
+        figure(record, "ensemble", "Factors of all samples, the share below each, and a fitted distribution.");
+    let content = [facts(&rows), picture, part("Random values", &random(json))];
+    chapter("Probability of failure", &content.concat())
+}
+
+fn random(json: &Value) -> String {
+    let row = |value: &Value| -> Vec<Cell> {
+        let key = text(&value["key"]);
+        let number = |name: &str| plain(&value[name], "", Digits::Typed);
+        vec![
+            key.into(),
+            text(&value["distribution"]).into(),
+            number("mean").into(),
+            number("sd").into(),
+            number("least").or(number("low")).into(),
+            number("mode").into(),
+            number("most").or(number("high")).into(),
+            plain(&json["rank_correlation"][key], "", Three).into(),
+        ]
+    };
+    let rows: Vec<Vec<Cell>> = entries(&json["random"]).iter().map(row).collect();
+    let head = [
+        "Value",
+        "Distribution",
+        "Mean",
+        "Standard deviation",
+        "Least",
+        "Most frequent",
+        "Greatest",
+        "Rank correlation with F",
+    ];
+    table(&head, &rows)
+}

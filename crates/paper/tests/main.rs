@@ -1,0 +1,3 @@
+//! Tests of the report on paper.
+
+mod report;

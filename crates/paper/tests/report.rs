@@ -1,0 +1,177 @@
+//! Claim: a report holds what its folder holds and says what is missing; all its numbers are those of the records; it
+//! shows text as text; a folder without results, or with a broken one, is an error with a remedy.
+
+use std::fs;
+use std::path::Path;
+
+use enmm_paper::{Converter, REPORT, Records, RecordsError, report_html, write_report};
+use serde_json::{Value, json};
+
+fn input() -> Value {
+    json!({
+        "report": { "project": "Quarry <North>", "author": "R. Ock & Co", "date": "2026-11-25" },
+        "section": { "azimuth_deg": 75.0 },
+        "gravity": { "x": 0.0, "y": -9.81 },
+        "rocks": { "gneiss": { "density": 2650.0, "young": 20e9, "poisson": 0.25, "cohesion": null } },
+        "joint_laws": { "fault": { "kind": "mohr_coulomb", "friction_deg": 32.5, "cohesion": 40e3, "tension": 0.0 } },
+        "joint_sets": [{ "name": "bedding", "dip_deg": 20.0, "dips": "right", "spacing": 4.0, "seed": 1 }],
+        "joints": [{ "law": "fault", "count": 2, "length": 25.1234 }],
+        "water": { "level": null, "table": [[0.0, 0.0], [40.0, 6.0]], "density": 1000.0, "joints": true },
+        "in_situ": null,
+        "bolts": [{
+            "name": "row_1", "points": [[2.5, 4.9], [20.2, 1.8]], "length": 18.0, "anchorage": "ends",
+            "spacing": 2.0, "area": 5e-4, "pretension": 100e3, "yield_force": 250e3
+        }],
+        "loads": [], "base_motions": [], "random": [],
+        "stages": [{ "name": "gravity", "kind": "static", "install": [] }],
+        "case_text": "title = \"a < b\"\n"
+    })
+}
+
+fn fos() -> Value {
+    json!({
+        "title": "Bench slope", "version": "0.1.0", "case_file": "slope.toml", "case_hash": "0123456789abcdef",
+        "settings": [], "factor_of_safety": 1.44288, "at_least": null,
+        "bracket": { "stable": 1.44108, "unstable": 1.44468 },
+        "failing": { "verdict": "caught", "blocks": 8, "area": 94.605, "mass": 250703.4, "share": 0.14412 },
+        "bound": { "level_tops": { "factor": 1.6254, "end": "found", "limit": 1.6254 }, "warnings": [], "notes": [] },
+        "trials": [{ "factor": 1.0, "verdict": "stable", "displacement": 3.78e-5, "failing_blocks": 0,
+                     "failing_area": 0.0 }],
+        "bolts": [
+            { "bolt": 0, "force": 211400.0, "utilisation": 0.8456, "state": "elastic" },
+            { "bolt": 0, "force": 105.0, "utilisation": 0.00042, "state": "elastic" }
+        ],
+        "mechanisms": [],
+        "warnings": ["the energy ledger of a trial is open"], "notes": [],
+        "input": input()
+    })
+}
+
+fn folder_with(files: &[(&str, &Value)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, value) in files {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().expect("a parent")).expect("made");
+        fs::write(path, value.to_string()).expect("written");
+    }
+    folder
+}
+
+fn html(folder: &Path) -> String {
+    report_html(&Records::read(folder).expect("records"))
+}
+
+/// All numbers of a record.
+fn numbers(value: &Value, into: &mut Vec<f64>) {
+    match value {
+        Value::Number(number) => into.extend(number.as_f64()),
+        Value::Array(list) => list.iter().for_each(|value| numbers(value, into)),
+        Value::Object(map) => map.values().for_each(|value| numbers(value, into)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_number_of_the_tables_is_one_of_the_record() {
+    let folder = folder_with(&[("fos.json", &fos())]);
+    let html = html(folder.path());
+    let mut known = Vec::new();
+    numbers(&fos(), &mut known);
+    let shown: Vec<f64> = html.split("<data value=\"").skip(1).map(number).collect();
+    assert!(shown.len() > 30, "{}", shown.len());
+    for value in shown {
+        assert!(known.contains(&value), "{value}");
+    }
+    for (value, text) in [
+        ("1.44288", "1.44"),
+        ("94.605", "94.6"),
+        ("250703.4", "251"),
+        ("0.8456", "84.6"),
+        ("40000", "40"),
+        ("32.5", "32.5"),
+    ] {
+        assert!(html.contains(&format!("<data value=\"{value}\">{text}</data>")), "{value}");
+    }
+    // The largest tension along the bolt alone is shown.
+    assert!(!html.contains("0.00042"));
+}
+
+fn number(text: &str) -> f64 {
+    text.split('"').next().expect("a value").parse().expect("a number")
+}
+
+#[test]
+fn names_are_text_and_the_words_of_the_method_are_not_used() {
+    let folder = folder_with(&[("fos.json", &fos())]);
+    let html = html(folder.path());
+    assert!(html.contains("Quarry &lt;North&gt;") && html.contains("R. Ock &amp; Co") && html.contains("a &lt; b"));
+    assert!(html.contains("the energy balance of a trial is open"));
+    let words: Vec<String> =
+        html.split(|c: char| !c.is_alphabetic()).map(str::to_lowercase).filter(|word| !word.is_empty()).collect();
+    for word in ["cover", "covers", "star", "stars", "ledger"] {
+        assert!(!words.iter().any(|own| own == word), "{word}");
+    }
+    assert!(!words.windows(2).any(|pair| pair[0] == "level" && pair[1] == "tops"));
+    assert!(!html.contains("<script") && !html.contains("http"), "no program and no network");
+}
+
+#[test]
+fn what_is_not_there_is_named() {
+    let folder = folder_with(&[("fos/fos.json", &fos())]);
+    let html = html(folder.path());
+    for line in ["enmm run was not run", "enmm sample was not run", "Picture failure.svg: it was not drawn"] {
+        assert!(html.contains(line), "{line}");
+    }
+    assert!(!html.contains("the case has no table [section]"));
+}
+
+#[test]
+fn results_of_different_cases_are_told_apart() {
+    let mut run = fos();
+    run["case_hash"] = json!("fedcba9876543210");
+    run["status"] = json!("finished");
+    let folder = folder_with(&[("summary.json", &run), ("fos.json", &fos())]);
+    assert!(html(folder.path()).contains("another version of the case (fingerprint 0123456789abcdef)"));
+}
+
+#[test]
+fn pictures_are_part_of_the_file() {
+    let folder = folder_with(&[("fos.json", &fos())]);
+    fs::write(folder.path().join("failure.svg"), "<svg xmlns=\"x\"/>").expect("written");
+    let records = Records::read(folder.path()).expect("records");
+    let path = write_report(folder.path(), &records).expect("written");
+    assert_eq!(path, folder.path().join(REPORT));
+    let html = fs::read_to_string(path).expect("text");
+    assert!(html.contains("src=\"data:image/svg+xml;base64,PHN2ZyB4bWxucz0ieCIvPg==\""));
+}
+
+#[test]
+fn folders_without_results_and_broken_records_are_errors() {
+    let empty = folder_with(&[]);
+    let message = |folder: &Path| Records::read(folder).expect_err("no records").to_string();
+    assert!(message(empty.path()).contains("fos.json (enmm fos)"));
+    assert!(matches!(Records::read(&empty.path().join("none")), Err(RecordsError::NoFolder(_))));
+    for text in ["{", "[1]", "\"text\""] {
+        fs::write(empty.path().join("fos.json"), text).expect("written");
+        assert!(message(empty.path()).contains("run the command that wrote it again"), "{text}");
+    }
+    // Records of other types than expected are shown as far as they go.
+    fs::write(empty.path().join("fos.json"), "{\"trials\": 3, \"input\": [], \"warnings\": {\"a\": 1}}")
+        .expect("written");
+    assert!(html(empty.path()).contains("did not record it"));
+}
+
+/// A program that makes no PDF leaves none, and nothing else.
+#[cfg(unix)]
+#[test]
+fn a_converter_that_fails_leaves_nothing() {
+    let folder = folder_with(&[("fos.json", &fos())]);
+    let page = write_report(folder.path(), &Records::read(folder.path()).expect("records")).expect("written");
+    let before = fs::read_dir(folder.path()).expect("a folder").count();
+    for program in ["/bin/true", "/bin/false", "/does/not/exist"] {
+        let pdf = folder.path().join("out.pdf");
+        let error = Converter::named(Path::new(program)).convert(&page, &pdf).expect_err("no PDF").to_string();
+        assert!(error.contains(program), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), before);
+    }
+}
