@@ -2,6 +2,7 @@
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `assemble`.
 
 mod bolt;
+mod drawing;
 mod expand;
 mod fingerprint;
 mod ground;
@@ -19,6 +20,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 pub use bolt::{Anchorage, Bolt, BoltPattern};
+pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use in_situ::InSitu;
@@ -39,8 +41,17 @@ pub type TimeTable = Vec<[f64; 2]>;
 pub struct Case {
     /// Description of the model.
     pub title: String,
+    /// What the reader of a geometry file has converted or left out; notes of the built model begin with it.
+    #[serde(skip)]
+    pub reader_notes: Vec<String>,
     /// Rock outline and joint traces from files.
     pub domain: Domain,
+    /// Layers of the DXF drawing by name, in any letter case; `"*"` is every other layer.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub layers: BTreeMap<String, Layer>,
+    /// How the coordinates of `domain.geometry_file` become metres of the section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transform: Option<Transform>,
     /// The regular triangular mesh of mathematical covers.
     pub mesh: Mesh,
     /// Joint traces.
@@ -160,6 +171,10 @@ pub struct Domain {
     /// JSON (`outline`, `joints`), GeoJSON, DXF, WKT or CSV, relative to the case file.
     #[serde(default)]
     pub geometry_file: Option<PathBuf>,
+    /// Greatest distance (m) of arcs and splines of a DXF drawing from the polylines that they become; default 0.02 mesh
+    /// sizes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_tolerance: Option<f64>,
     /// Law of traces that name none.
     #[serde(default)]
     pub joint_law: Option<String>,
@@ -528,6 +543,11 @@ pub struct Water {
 }
 
 impl Water {
+    /// Water without a surface yet, all else as a case has it that names nothing.
+    pub fn still() -> Self {
+        Self { level: None, table: None, density: water_density(), joints: true, faces: None }
+    }
+
     /// Height of the surface at the start (m): `level`, or the highest point of `table`.
     pub fn start_level(&self) -> f64 {
         let highest = || self.table.iter().flatten().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max);

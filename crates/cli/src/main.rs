@@ -8,6 +8,7 @@ mod check;
 mod draw;
 mod fmu;
 mod fos;
+mod import;
 mod new;
 mod output;
 mod progress;
@@ -55,6 +56,8 @@ enum Command {
     },
     /// Writes a commented case to begin with.
     New(new::Arguments),
+    /// Writes a case for a DXF drawing, with all its layers, and says what is left open.
+    Import(import::Arguments),
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),
     /// Solves problems with known answers and prints computed beside exact values.
@@ -91,6 +94,7 @@ fn execute(command: Command) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, output, json } => check::check(&case, output.as_deref(), json),
         Command::New(arguments) => new::new(&arguments),
+        Command::Import(arguments) => import::import(&arguments),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),

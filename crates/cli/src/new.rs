@@ -76,7 +76,10 @@ pub fn new(arguments: &Arguments) -> ExitCode {
 }
 
 /// Writes a file that is not there yet.
-fn create(path: &Path, text: &str) -> std::io::Result<()> {
+///
+/// # Errors
+/// The file is there already, or the system refuses it.
+pub fn create(path: &Path, text: &str) -> std::io::Result<()> {
     let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
     file.write_all(text.as_bytes())
 }
