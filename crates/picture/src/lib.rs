@@ -23,6 +23,7 @@ mod sheet;
 mod signs;
 mod slope;
 mod stage;
+mod stereonet;
 mod svg;
 
 use std::io;
@@ -44,6 +45,7 @@ pub use signs::Held;
 pub use stage::{
     StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
+pub use stereonet::{Projection, Stereonet};
 
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]

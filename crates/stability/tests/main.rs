@@ -7,6 +7,7 @@ mod examples_of_claims;
 mod fos_against_bound;
 mod fos_block_on_incline;
 mod issue_a_fault_a_millimetre_short_held_a_slope;
+mod kinematics;
 mod limit_analysis;
 mod soil_slope;
 mod tutorials;

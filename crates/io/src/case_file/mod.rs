@@ -10,7 +10,7 @@ use super::geometry_file::{self, Fault, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
 use super::record_file;
 use enmm::cosimulation::Cosimulation;
-use enmm::model::case::{Case, Invalid, JointTrace};
+use enmm::model::case::{Case, Invalid, JointTrace, Orientations};
 
 /// Largest text of a case (bytes): some 100 000 traces, which take two seconds to read. Files of geometry and records
 /// are read far faster.
@@ -26,6 +26,8 @@ pub struct LoadedCase {
     pub source: CaseSource,
     /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
     pub hash: String,
+    /// Planes in space of joint sets and joints, which the case holds as traces.
+    pub orientations: Orientations,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Values that took the place of those of the case file, as `key=value`.
@@ -44,6 +46,7 @@ impl LoadedCase {
     }
 
     fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
+        let orientations = case.orientations();
         let told = case.expand().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
         warnings.extend(told.notes);
         source.origins = told.origins;
@@ -51,7 +54,7 @@ impl LoadedCase {
         case.validate().map_err(located)?;
         let hash = case.fingerprint().map_err(located)?;
         let settings = source.settings.values().cloned().collect();
-        Ok(Self { case, source, hash, warnings, settings })
+        Ok(Self { case, source, hash, orientations, warnings, settings })
     }
 
     /// Builds the model of the case for a host that drives it.

@@ -53,7 +53,7 @@ impl Arc {
         let free = if tolerance < half { 4.0 * libm::asin((tolerance / (4.0 * half)).sqrt()) } else { f64::INFINITY };
         let turn = self.span[1] - self.span[0];
         let chords = (turn.abs() / free.min(std::f64::consts::TAU / CHORDS_PER_TURN)).ceil().max(1.0);
-        if chords.is_nan() || chords > CHORDS_MAX as f64 {
+        if !half.is_finite() || chords.is_nan() || chords > CHORDS_MAX as f64 {
             return None;
         }
         let at = |k: usize| {
