@@ -6,6 +6,7 @@ mod bound;
 mod case;
 mod check;
 mod draw;
+mod edit;
 mod fmu;
 mod fos;
 mod import;
@@ -14,6 +15,7 @@ mod output;
 mod progress;
 mod run;
 mod sample;
+mod stereonet;
 mod verify;
 mod view;
 
@@ -71,6 +73,10 @@ enum Command {
     Draw,
     /// Bounds the factor of safety of a case by limit analysis of its blocks as rigid bodies.
     Bound(bound::Arguments),
+    /// Draws the joint sets of a case in space and checks which failures they allow.
+    Stereonet(stereonet::Arguments),
+    /// Shows the model of a case in a browser while the case is written, built again at each save.
+    Edit(edit::Arguments),
     /// Shows a run in a browser while it goes on.
     View(view::Arguments),
     /// Times standard models: milliseconds per step and stage, rates, memory, limits of the machine.
@@ -101,6 +107,8 @@ fn execute(command: Command) -> ExitCode {
         Command::Sample(arguments) => sample::sample(&arguments),
         Command::Draw => draw::draw(),
         Command::Bound(arguments) => bound::bound(&arguments),
+        Command::Stereonet(arguments) => stereonet::stereonet(&arguments),
+        Command::Edit(arguments) => edit::edit(arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),

@@ -151,7 +151,8 @@ impl<'a> Draft<'a> {
     /// Least and greatest x and y of the outline, of all lines where there is none.
     fn bounds(&self) -> [[f64; 2]; 2] {
         let of_layers = self.survey.layers.iter().flat_map(|layer| layer.loops.iter().chain(&layer.lines)).flatten();
-        let points: Vec<&[f64; 2]> = if self.ring().is_empty() { of_layers.collect() } else { self.ring().iter().collect() };
+        let points: Vec<&[f64; 2]> =
+            if self.ring().is_empty() { of_layers.collect() } else { self.ring().iter().collect() };
         let axis = |k: usize| {
             let ends = (f64::INFINITY, f64::NEG_INFINITY);
             let (low, high) = points.iter().fold(ends, |(low, high), p| (low.min(p[k]), high.max(p[k])));
