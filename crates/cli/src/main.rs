@@ -10,6 +10,7 @@ mod edit;
 mod fmu;
 mod fos;
 mod import;
+mod manual;
 mod new;
 mod output;
 mod progress;
@@ -33,9 +34,22 @@ const FAILED: u8 = 3;
 /// Interrupted by the user.
 const INTERRUPTED: u8 = 130;
 
+/// Examples and exit status, below the list of commands.
+const AFTER_HELP: &str = "\
+Examples:
+  enmm new slope                                 a commented case to begin with
+  enmm import map.dxf -o slope.toml              a case for a drawing
+  enmm edit slope.toml                           the model in a browser while you write
+  enmm run slope.toml                            all stages, results in the folder slope
+  enmm fos slope.toml                            factor of safety
+  enmm fos slope.toml --set joint_law.fault.friction_deg=25
+
+Exit status: 0 done; 1 a verification problem missed its answer; 2 bad input, nothing written; 3 numerical failure, or
+output that could not be written; 130 interrupted.";
+
 /// Explicit numerical manifold method for jointed rock slopes.
 #[derive(Parser)]
-#[command(name = "enmm", version)]
+#[command(name = "enmm", version, after_help = AFTER_HELP)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -46,6 +60,7 @@ enum Command {
     /// Builds a case, runs all its stages and writes the results.
     Run(run::Arguments),
     /// Builds the model of a case and reports its counts, areas, masses and warnings.
+    #[command(after_help = "Example: enmm check slope.toml -o slope")]
     Check {
         #[command(flatten)]
         case: case::CaseArguments,
@@ -83,6 +98,10 @@ enum Command {
     Bench(bench::Arguments),
     /// Prints the JSON Schema of the case file.
     Schema,
+    /// Prints the script by which a shell completes commands and options.
+    Completions(manual::CompletionArguments),
+    /// Writes a manual page of each command.
+    Man(manual::ManArguments),
 }
 
 fn main() -> ExitCode {
@@ -112,6 +131,8 @@ fn execute(command: Command) -> ExitCode {
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),
+        Command::Completions(arguments) => manual::completions(&arguments),
+        Command::Man(arguments) => manual::man(&arguments),
     }
 }
 

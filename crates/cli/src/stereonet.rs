@@ -13,6 +13,7 @@ use crate::{BAD_INPUT, FAILED, fail, print_line};
 
 /// Arguments of `enmm stereonet`.
 #[derive(Args)]
+#[command(after_help = "Example: enmm stereonet slope.toml --face 65/120 -o net.svg")]
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,

@@ -22,6 +22,7 @@ const PAUSE: Duration = Duration::from_millis(40);
 
 /// Arguments of `enmm edit`.
 #[derive(Args)]
+#[command(after_help = "Example: enmm edit slope.toml --port 8080")]
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,

@@ -14,6 +14,7 @@ use crate::{BAD_INPUT, fail, print_line};
 
 /// Arguments of `enmm import`.
 #[derive(Args)]
+#[command(after_help = "Example: enmm import map.dxf -o slope.toml")]
 pub struct Arguments {
     /// Drawing (ASCII DXF).
     drawing: PathBuf,
