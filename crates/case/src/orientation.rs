@@ -24,9 +24,9 @@ pub struct Orientation {
 pub struct Orientations {
     /// Azimuth of the x axis (degrees), if the case has a section.
     pub azimuth: Option<f64>,
-    /// Joint sets, and joints of which the case lists few.
+    /// Joint sets, and straight joints of which the case lists few.
     pub planes: Vec<Orientation>,
-    /// Number of joints that are left out.
+    /// Number of joints that are left out: too many, or not straight.
     pub left_out: usize,
 }
 
@@ -64,7 +64,10 @@ impl Case {
             return found;
         }
         for (k, joint) in self.joints.iter().enumerate() {
-            let [a, .., b] = joint.points[..] else { continue };
+            let [a, b] = joint.points[..] else {
+                found.left_out += 1;
+                continue;
+            };
             let trace = folded(libm::atan2(b[1] - a[1], b[0] - a[0]).to_degrees());
             let [dip, direction] = found.normal_to_section(trace);
             let friction = self.friction_of(joint.law.as_deref());

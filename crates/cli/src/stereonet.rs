@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm_io::files::write_atomic;
-use enmm_run::{NetOptions, Projection, stereonet as net_of};
+use enmm_run::{NetOptions, Projection, check_output, stereonet as net_of};
 use enmm_stability::kinematics::{Limits, Plane};
 
 use crate::case::CaseArguments;
@@ -68,8 +68,8 @@ pub fn stereonet(arguments: &Arguments) -> ExitCode {
         Err(message) => return fail(&format!("{}: {message}", loaded.source.file()), BAD_INPUT),
     };
     let path = arguments.output.clone().unwrap_or_else(|| arguments.case.path.with_extension("stereonet.svg"));
-    if loaded.source.inputs().contains(&path) {
-        return fail(&format!("{} is the case itself; choose another file with -o", path.display()), BAD_INPUT);
+    if let Err(error) = check_output(&path, loaded.source.inputs()) {
+        return fail(&format!("cannot write the picture ({error}): choose another file with -o"), BAD_INPUT);
     }
     if let Err(error) = write_atomic(&path, net.picture().svg().as_bytes()) {
         return fail(&format!("cannot write the picture ({error}): choose another file with -o"), FAILED);

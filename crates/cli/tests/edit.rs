@@ -82,7 +82,7 @@ fn a_save_shows_the_model_and_an_error_keeps_the_last_one() {
     fs::write(place.path("case.toml"), case(1.0).replace("density", "densty")).expect("saved");
     let wrong = editor.wait(|state| state["error"] != Value::Null);
     let message = wrong["error"].as_str().expect("a message");
-    assert!(message.starts_with("case.toml:13: rock.granite.densty: unknown key"), "{message}");
+    assert!(message.starts_with("case.toml:15: rock.granite.densty: unknown key"), "{message}");
     assert_eq!((wrong["model"].as_u64(), fact(&wrong, "blocks")), (Some(1), "3"));
     assert_eq!(editor.get("/model?from=1", &editor.address).1, page);
 

@@ -27,7 +27,7 @@ fn one_command_makes_the_section_of_a_drawing() {
         "assumed: layer \"TERRAIN\" is \"outline\": its closed line is the largest of the drawing",
         "assumed: mesh.size is 0.5 m",
         "assumed: the edge (0, 0) to (40, 0) is held in xy",
-        "example values: [joint_law.faults] friction_deg",
+        "example values: [joint_law.faults]: friction_deg",
         "open: layer \"FRAME\": 3DFACE is not read",
         "section.toml: fill in what is open, then: enmm check section.toml",
     ] {
@@ -49,7 +49,7 @@ fn values_that_no_drawing_has_stay_open() {
     let place = place();
     let answer = place.enmm(&["import", "section.dxf", "-o", "open.toml"]);
     assert_eq!(answer.status, Some(0), "{answer:?}");
-    assert!(answer.stdout.contains("open: [rock.rock] density, young, poisson"), "{answer:?}");
+    assert!(answer.stdout.contains("open: [rock.rock]: density, young, poisson"), "{answer:?}");
     let checked = place.enmm(&["check", "open.toml"]);
     checked.assert_bad_input(&["open.toml:", "is missing"]);
     // Each open value, filled in, is one error less; then the case is accepted.

@@ -54,5 +54,9 @@ fn sets_in_space_fail_as_computed_by_hand() {
     assert!(own.contains("equal angle (Wulff)"));
     let wrong = place.enmm(&["stereonet", "case.toml", "--face", "95/120"]);
     assert!(wrong.status == Some(2) && wrong.stderr.contains("write a dip of 0 to 90"), "{wrong:?}");
-    place.enmm(&["stereonet", "case.toml", "-o", "case.toml"]).assert_bad_input(&["case.toml is the case itself"]);
+    place.enmm(&["stereonet", "case.toml", "-o", "case.toml"]).assert_bad_input(&[
+        "cannot write the picture",
+        "case.toml",
+        "choose another file",
+    ]);
 }

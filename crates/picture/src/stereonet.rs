@@ -170,11 +170,14 @@ impl Stereonet {
     }
 
     fn wedges(&self, sheet: &mut Sheet, found: &Failures) {
-        for (a, b, line) in &found.wedges {
+        for (.., line) in &found.wedges {
             let [x, y] = self.at(line);
             let mut mark = Path::default();
             mark.polygon([[x, y - 8.0], [x + 7.0, y + 5.0], [x - 7.0, y + 5.0]]);
             sheet.path(mark, Style::fill(ACCENT));
+        }
+        for (a, b, line) in &found.wedges {
+            let [x, y] = self.at(line);
             let name = format!("{}+{}", a + 1, b + 1);
             sheet.text([x + 10.0, y - 6.0], &name, TextStyle::new(SMALL).colour(ACCENT).halo());
         }
@@ -200,8 +203,12 @@ impl Stereonet {
         }
         for line in self.findings(found) {
             let colour = if line.ends_with(NONE) { INK } else { ACCENT };
-            say(sheet, &line, TextStyle::new(TEXT).colour(colour), ROW);
+            for (k, part) in wrapped(&line).iter().enumerate() {
+                let size = if k == 0 { TEXT } else { SMALL };
+                say(sheet, part, TextStyle::new(size).colour(colour), if k == 0 { ROW } else { 18.0 });
+            }
         }
+        say(sheet, LEGEND, TextStyle::new(SMALL).colour(GREY), 18.0);
         for line in &self.notes {
             say(sheet, line, TextStyle::new(SMALL).colour(GREY), 18.0);
         }
@@ -223,6 +230,31 @@ impl Stereonet {
     }
 }
 
+/// A line of findings in lines that fit the list: the first of its names, then the others.
+fn wrapped(line: &str) -> Vec<String> {
+    let mut parts: Vec<String> = line.split("), ").map(str::to_owned).collect();
+    let last = parts.len() - 1;
+    parts[..last].iter_mut().for_each(|part| part.push(')'));
+    if last == 0 {
+        return parts;
+    }
+    if parts.len() > WEDGES {
+        let more = parts.len() - WEDGES;
+        parts.truncate(WEDGES);
+        parts.push(format!("and {more} more"));
+    }
+    let (head, first) = parts[0]
+        .split_once(": ")
+        .map_or((String::new(), parts[0].clone()), |(head, first)| (format!("{head}:"), first.to_owned()));
+    parts[0] = first;
+    parts.insert(0, head);
+    parts
+}
+
+/// Most wedges of the list.
+const WEDGES: usize = 8;
+/// Meaning of the marks.
+const LEGEND: &str = "dots: dip lines, squares: poles, triangles: wedges; red: fails";
 /// Word for no failure.
 const NONE: &str = "none";
 

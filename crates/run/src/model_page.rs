@@ -19,6 +19,6 @@ pub fn write_model_page(directory: &Path, loaded: &LoadedCase, simulation: &Simu
     let opening = Opening { command: "edit", film, axis, quantities: Vec::new(), columns: &[] };
     let mut film = Film::open(directory, loaded, simulation, opening, None)?;
     film.frame_at(simulation, 0.0)?;
-    film.close(0.0, "as built".to_owned())?;
+    film.close(0.0, "finished".to_owned())?;
     Ok(directory.join(PAGE))
 }

@@ -36,7 +36,7 @@ pub fn stereonet(loaded: &LoadedCase, options: &NetOptions) -> Result<Stereonet,
         notes.push("⊥: known in the section alone, taken normal to it".to_owned());
     }
     if *left_out > 0 {
-        notes.push(format!("{left_out} joints of the case are not drawn one by one"));
+        notes.push(format!("{left_out} joints of the case are not drawn: curved, bent, or too many"));
     }
     let Limits { sliding, toppling } = options.limits;
     notes.push(format!("plane: within {sliding:.0}° of the face, flatter than it, steeper than φ"));
@@ -65,9 +65,13 @@ pub fn stereonet(loaded: &LoadedCase, options: &NetOptions) -> Result<Stereonet,
 
 /// The trace of a plane in words: `in the section 24° down to the right`.
 pub fn apparent(plane: &Orientation) -> String {
-    let side = if plane.trace > 0.0 { "left" } else { "right" };
     let sign = if plane.in_space { "" } else { "⊥ " };
-    format!("{sign}in the section {:.1}° down to the {side}", plane.trace.abs())
+    let (dip, side) = (plane.trace.abs(), if plane.trace > 0.0 { "left" } else { "right" });
+    match dip {
+        dip if dip < 0.05 => format!("{sign}level in the section"),
+        dip if dip >= 89.95 => format!("{sign}upright in the section"),
+        dip => format!("{sign}in the section {dip:.1}° down to the {side}"),
+    }
 }
 
 /// The longest edge of the outline that dips by 20° at least and has its rock below, off the sides of the model.

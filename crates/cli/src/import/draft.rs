@@ -114,14 +114,14 @@ impl<'a> Draft<'a> {
         }
         let of = |table: &str, values: &[Value]| {
             let keys: Vec<&str> = values.iter().map(|value| value.key).collect();
-            format!("[{table}] {}", keys.join(", "))
+            format!("{table}: {}", keys.join(", "))
         };
-        let mut values = vec![of("rock.rock", &ROCK)];
+        let mut values = vec![of("[rock.rock]", &ROCK)];
         for mapped in &self.layers {
             let name = mapped.name.as_deref().unwrap_or_default();
             match mapped.role {
-                "joint" => values.push(of(&format!("joint_law.{}", quoted(name)), &LAW)),
-                "bolt" => values.push(of(&format!("[bolt]] {name:?}, [bolt"), &BOLT)),
+                "joint" => values.push(of(&format!("[joint_law.{}]", quoted(name)), &LAW)),
+                "bolt" => values.push(of(&format!("[[bolt]] {name:?}"), &BOLT)),
                 _ => {}
             }
         }
