@@ -23,7 +23,7 @@ pub struct Bolt {
     #[serde(default)]
     pub name: Option<String>,
     /// Head and far end (m), both in rock; required, unless a layer of a drawing names the bolt.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_nowhere")]
     pub points: [[f64; 2]; 2],
     /// Ends or grouted.
     #[serde(default)]
@@ -57,8 +57,13 @@ pub struct Bolt {
 impl Bolt {
     /// Whether the bolt leaves its points to a layer of a drawing.
     pub fn has_no_points(&self) -> bool {
-        self.points == [[0.0; 2]; 2]
+        is_nowhere(&self.points)
     }
+}
+
+/// Whether points are those of a bolt that gives none.
+fn is_nowhere(points: &[[f64; 2]; 2]) -> bool {
+    *points == [[0.0; 2]; 2]
 }
 
 /// A row of equal bolts whose heads lie on the face. Bolts of a pattern `rock` are named `rock_1`, `rock_2`, …; a stage

@@ -28,7 +28,7 @@ fn one_command_makes_the_section_of_a_drawing() {
         "assumed: mesh.size is 0.5 m",
         "assumed: the edge (0, 0) to (40, 0) is held in xy",
         "example values: [joint_law.faults]: friction_deg",
-        "open: layer \"FRAME\": 3DFACE is not read",
+        "open: layer \"FRAME\": 3DFACE is of a type that is not read; explode it in the drawing",
         "section.toml: fill in what is open, then: enmm check section.toml",
     ] {
         assert!(answer.stdout.contains(part), "{part:?} is not in {}", answer.stdout);

@@ -23,7 +23,7 @@ pub use schema::schema;
 /// `tolerance` (m).
 ///
 /// # Errors
-/// The first thing that cannot be read, with file and line.
+/// The file is no drawing, or a block cannot be placed, with file and line.
 pub fn survey_drawing(path: &Path, tolerance: f64) -> Result<Survey, CaseError> {
     let file = path.display().to_string();
     let text =

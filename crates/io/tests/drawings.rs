@@ -341,3 +341,28 @@ fn layers_of_old_drawings_keep_their_letters() {
         )
     );
 }
+
+/// An outline that was drawn side by side, in any order and sense, is one loop; a gap is named with its width.
+#[test]
+fn open_lines_that_meet_are_a_loop() {
+    let line = |a: [f64; 2], b: [f64; 2]| {
+        format!("0\nLINE\n8\nhole\n10\n{}\n20\n{}\n11\n{}\n21\n{}\n", a[0], a[1], b[0], b[1])
+    };
+    let sides = |corner: [f64; 2]| {
+        line([4.0, 1.0], [5.0, 1.0])
+            + &line([5.0, 2.0], [5.0, 1.0])
+            + &line(corner, [4.0, 1.0])
+            + "0\nARC\n8\nhole\n10\n4.5\n20\n2\n40\n0.5\n50\n0\n51\n180\n"
+    };
+    let loaded = with_geometry("g.dxf", &drawing("", &sides([4.0, 2.0]))).unwrap();
+    let hole = &loaded.case.domain.holes[0];
+    near(&hole[..3], &[[4.0, 1.0], [5.0, 1.0], [5.0, 2.0]]);
+    near(&hole[hole.len() - 1..], &[[4.0, 2.0]]);
+    assert!(notes_of(&loaded).contains(&"1 loops joined of open lines that meet".to_owned()));
+    let error = with_geometry("g.dxf", &drawing("", &sides([4.0, 2.25]))).unwrap_err();
+    assert_eq!(
+        error,
+        "g.dxf:94: entity[4]: LINE on layer \"hole\" is open, a loop must be closed; close it; its end at (4.000000, \
+         2.000000) is 2.500e-1 m from the next line of this use"
+    );
+}

@@ -90,7 +90,7 @@ fn the_section_cuts_joints_at_their_apparent_dip() {
         assert!((set.spacing_sd / set.spacing - 0.5 / 3.0).abs() < 1e-12, "{set:?}");
     }
     let unused = loaded(&text("[section]\nazimuth_deg = 90\n", STAGE)).warnings;
-    assert_eq!(unused, ["section: has no effect, since no joint set has `dip_direction_deg`"]);
+    assert_eq!(unused, ["section: acts on the stereonet alone, since no joint set has `dip_direction_deg`"]);
     let refused = error(&section(88.0, 180.0, 90.0));
     assert!(refused.contains("joint_set[0]: the joints lie within 2.0° of the section"), "{refused}");
 }

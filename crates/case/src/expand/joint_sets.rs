@@ -18,7 +18,7 @@ pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
         let key = Key::root().field("section");
         number(&key, "azimuth_deg", section.azimuth_deg, Range::within(360.0), "degrees", "clockwise from north")?;
         if case.joint_sets.iter().all(|set| set.dip_direction_deg.is_none()) {
-            told.notes.push(format!("{key}: has no effect, since no joint set has `dip_direction_deg`"));
+            told.notes.push(format!("{key}: acts on the stereonet alone, since no joint set has `dip_direction_deg`"));
         }
     }
     for (k, set) in case.joint_sets.iter_mut().enumerate() {

@@ -25,7 +25,9 @@ pub struct Mapped<'a> {
 pub fn mapped(survey: &Survey) -> Vec<Mapped<'_>> {
     let outline = outline(survey);
     let mut names = Vec::new();
-    let mut all: Vec<Mapped> = survey.layers.iter().map(|layer| mapped_layer(layer, outline)).collect();
+    let open = |layer: &LayerSurvey| layer.problems.values().next().cloned();
+    let of = |layer| Mapped { open: open(layer), ..mapped_layer(layer, outline) };
+    let mut all: Vec<Mapped> = survey.layers.iter().map(of).collect();
     for mapped in all.iter_mut().filter(|mapped| ["joint", "bolt"].contains(&mapped.role)) {
         mapped.name = Some(free_name(&mapped.layer.name, &mut names));
     }
@@ -37,12 +39,8 @@ fn mapped_layer<'a>(layer: &'a LayerSurvey, outline: Option<&LayerSurvey>) -> Ma
     let says = |words: &[&str]| words.iter().any(|word| name.contains(word));
     let of = |role, reason: Option<String>| Mapped { layer, role, name: None, reason, open: None };
     let straight = layer.loops.is_empty() && layer.lines.iter().all(|line| line.len() == 2);
-    if let Some(other) = layer.others.keys().next() {
-        let open = format!("{other} is not read: explode it in the drawing, or leave the layer ignored");
-        return Mapped { open: Some(open), ..of("ignore", None) };
-    }
     if layer.loops.is_empty() && layer.lines.is_empty() {
-        return of("ignore", Some("it has no lines".to_owned()));
+        return of("ignore", Some("no line of it can be read".to_owned()));
     }
     match name.as_str() {
         "outline" => return of("outline", None),

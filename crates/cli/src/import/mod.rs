@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::Args;
 
 use self::draft::Draft;
-use crate::new::create;
+use crate::new::{create, schema_beside};
 use crate::{BAD_INPUT, fail, print_line};
 
 /// Arguments of `enmm import`.
@@ -44,6 +44,9 @@ pub fn import(arguments: &Arguments) -> ExitCode {
             _ => error.to_string(),
         };
         return fail(&format!("cannot write {} ({reason}): choose another file with -o", case.display()), BAD_INPUT);
+    }
+    if let Err(message) = schema_beside(&case) {
+        return fail(&message, BAD_INPUT);
     }
     print_line(&draft.report(&case));
     ExitCode::SUCCESS

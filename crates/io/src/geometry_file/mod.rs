@@ -22,6 +22,9 @@ use enmm::model::case::{Invalid, PointList};
 /// Points with their key in the file.
 pub type Located = (PointList, String);
 
+/// Head and far end of a bolt with its key in the file.
+pub type LocatedBar = ([[f64; 2]; 2], String);
+
 /// Content of a geometry file.
 #[derive(Debug, Default)]
 pub struct Geometry {
@@ -35,8 +38,8 @@ pub struct Geometry {
     pub traces: Vec<Trace>,
     /// Water table.
     pub water: Option<Located>,
-    /// Head and far end of bolts with their keys in the file, by the name of their `[[bolt]]`.
-    pub bolts: BTreeMap<String, Vec<([[f64; 2]; 2], String)>>,
+    /// Bolts by the name of their `[[bolt]]`.
+    pub bolts: BTreeMap<String, Vec<LocatedBar>>,
     /// Notes of what was converted or not used, with counts.
     pub notes: Vec<String>,
     /// Warnings of parts that were not used, with counts.

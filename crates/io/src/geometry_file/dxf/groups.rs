@@ -16,7 +16,8 @@ pub struct Group<'a> {
 
 /// All pairs of a file.
 pub struct Groups<'a> {
-    file: &'a str,
+    /// The file as the user named it.
+    pub file: &'a str,
     /// The pairs in order.
     pub all: Vec<Group<'a>>,
 }

@@ -5,6 +5,7 @@
 //!
 //! The crates that read DXF do not keep the line of an entity, which every message here has.
 
+mod chain;
 mod curve;
 mod entity;
 mod groups;
@@ -16,6 +17,7 @@ mod units;
 
 use std::collections::BTreeMap;
 
+use self::chain::{Dangling, Piece};
 use self::entity::{Content, Shape, Tracer};
 use self::groups::Groups;
 use self::inserts::{Inserter, Placed};
@@ -25,7 +27,7 @@ use super::{Fault, Geometry, Trace};
 use crate::case_error::CaseError;
 use enmm::model::Case;
 use enmm::model::case::key::Key;
-use enmm::model::case::{CURVE_TOLERANCE, Transform};
+use enmm::model::case::{CURVE_TOLERANCE, PointList, Transform};
 
 pub use self::survey::{LayerSurvey, Survey, survey};
 
@@ -54,11 +56,14 @@ pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, Fault> {
         notes: BTreeMap::new(),
         lawless: BTreeMap::new(),
         closed: BTreeMap::new(),
+        open: [const { Vec::new() }; 3],
+        snap_tolerance: case.domain.snap_tolerance,
         curves: 0,
     };
     for (i, placed) in sheet.placed.iter().enumerate() {
         reader.entity(&Key::root().field(ENTITY).index(i), placed)?;
     }
+    reader.join()?;
     if reader.geometry.outline.is_none() && case.domain.outline.is_empty() {
         return Err(reader.layers.no_outline(&reader.closed));
     }
@@ -97,6 +102,9 @@ struct Reader<'a> {
     lawless: BTreeMap<String, usize>,
     /// Closed lines by their layers.
     closed: BTreeMap<String, usize>,
+    /// Open lines of each kind of loop.
+    open: [Vec<Piece>; 3],
+    snap_tolerance: Option<f64>,
     curves: usize,
 }
 
@@ -158,17 +166,56 @@ impl Reader<'_> {
         let (kind, line) = (placed.record.kind, placed.record.line);
         let meets = shape.points.len() > 1 && shape.points.first() == shape.points.last();
         if !shape.closed && !meets {
-            let message = format!("{kind} on layer {:?} is open, a loop must be closed; close it", placed.layer);
-            return self.groups.fail(line, key, message);
+            let kind = format!("{kind} on layer {:?}", placed.layer);
+            self.open[which].push(Piece { points: shape.points, key: key.to_string(), line, kind });
+            return Ok(());
         }
         if meets {
             shape.points.pop();
         }
-        let located = (shape.points, key.to_string());
+        self.put_ring(which, key.as_str(), line, shape.points)
+    }
+
+    /// Joins the open lines of each kind of loop.
+    fn join(&mut self) -> Result<(), CaseError> {
+        for which in 0..LOOPS.len() {
+            let pieces = std::mem::take(&mut self.open[which]);
+            let Some(Piece { key, line, kind, .. }) = pieces.get(chain::PIECES_MAX) else {
+                self.join_pieces(which, pieces)?;
+                continue;
+            };
+            let message = format!("{kind} is open, as {} lines before it; join them", chain::PIECES_MAX);
+            return Err(CaseError::at(self.groups.file, *line, key, message));
+        }
+        Ok(())
+    }
+
+    fn join_pieces(&mut self, which: usize, pieces: Vec<Piece>) -> Result<(), CaseError> {
+        let points = || pieces.iter().flat_map(|piece| &piece.points);
+        let size = points().flatten().fold(0.0f64, |most, value| most.max(value.abs()));
+        let tolerance = self.snap_tolerance.unwrap_or(1e-6 * size);
+        let loops = chain::loops(pieces, tolerance).map_err(|dangling| {
+            let Dangling { piece, end: [x, y], gap } = *dangling;
+            let gap = gap.map_or(String::new(), |gap| {
+                format!("; its end at ({x:.6}, {y:.6}) is {gap:.3e} m from the next line of this use")
+            });
+            let message = format!("{} is open, a loop must be closed; close it{gap}", piece.kind);
+            CaseError::at(self.groups.file, piece.line, &piece.key, message)
+        })?;
+        for (points, first) in loops {
+            self.note("loops joined of open lines that meet".to_string(), 1);
+            self.put_ring(which, &first.key, first.line, points)?;
+        }
+        Ok(())
+    }
+
+    fn put_ring(&mut self, which: usize, key: &str, line: usize, points: PointList) -> Result<(), CaseError> {
+        let located = (points, key.to_string());
         match which {
             0 if self.geometry.outline.is_some() => {
                 let remedy = self.layers.remedy_of_second_outline();
-                return self.groups.fail(line, key, format!("is a second outline, there can be 1; {remedy}"));
+                let message = format!("is a second outline, there can be 1; {remedy}");
+                return Err(CaseError::at(self.groups.file, line, key, message));
             }
             0 => self.geometry.outline = Some(located),
             1 => self.geometry.holes.push(located),

@@ -28,14 +28,14 @@ pub struct LayerSurvey {
     pub loops: Vec<PointList>,
     /// Open lines (m).
     pub lines: Vec<PointList>,
-    /// Types that are not read.
-    pub others: BTreeMap<String, usize>,
+    /// Why entities cannot be read, the first of each type.
+    pub problems: BTreeMap<String, String>,
 }
 
 /// Looks at a drawing; curves are within `tolerance` (m).
 ///
 /// # Errors
-/// The first thing that cannot be read.
+/// The file is no drawing, or a block cannot be placed; an entity that cannot be read is a problem of its layer.
 pub fn survey(file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseError> {
     let groups = Groups::parse(file, text)?;
     let blocks = records::blocks(&groups)?;
@@ -50,7 +50,14 @@ pub fn survey(file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseErro
         let kind = placed.record.kind.to_string();
         *layer.counts.entry(kind.clone()).or_default() += 1;
         let tracer = Tracer { groups: &groups, map: placed.map, tolerance };
-        match tracer.content(placed.record)? {
+        let content = match tracer.content(placed.record) {
+            Ok(content) => content,
+            Err(error) => {
+                layer.problems.entry(kind).or_insert_with(|| error.to_string());
+                continue;
+            }
+        };
+        match content {
             Content::Line(mut shape) => {
                 let meets = shape.points.len() > 2 && shape.points.first() == shape.points.last();
                 if meets {
@@ -59,7 +66,10 @@ pub fn survey(file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseErro
                 if meets || shape.closed { layer.loops.push(shape.points) } else { layer.lines.push(shape.points) }
             }
             Content::Remark => {}
-            Content::Other => *layer.others.entry(kind).or_default() += 1,
+            Content::Other => {
+                let problem = format!("{kind} is of a type that is not read; explode it in the drawing");
+                layer.problems.entry(kind).or_insert(problem);
+            }
         }
     }
     Ok(Survey { layers: layers.into_values().collect(), notes: sheet.notes })
