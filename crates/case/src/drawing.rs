@@ -75,8 +75,8 @@ pub enum Flip {
 pub const CURVE_TOLERANCE: f64 = 0.02;
 
 impl Case {
-    /// Gives the bolt without `points` of this name those of lines of a drawing, and stages that install it all of them;
-    /// returns the place of each among the bolts.
+    /// Gives the bolt without `points` of this name those of lines of a drawing, and stages that install it all of
+    /// them; returns the place of each among the bolts.
     pub fn put_bolts(&mut self, name: &str, lines: &[[[f64; 2]; 2]]) -> Vec<usize> {
         let is_open = |bolt: &Bolt| bolt.name.as_deref() == Some(name) && bolt.has_no_points();
         let Some(place) = self.bolts.iter().position(is_open) else { return Vec::new() };

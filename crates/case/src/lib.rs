@@ -173,8 +173,8 @@ pub struct Domain {
     /// JSON (`outline`, `joints`), GeoJSON, DXF, WKT or CSV, relative to the case file.
     #[serde(default)]
     pub geometry_file: Option<PathBuf>,
-    /// Greatest distance (m) of arcs and splines of a DXF drawing from the polylines that they become; default 0.02 mesh
-    /// sizes.
+    /// Greatest distance (m) of arcs and splines of a DXF drawing from the polylines that they become; default 0.02
+    /// mesh sizes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve_tolerance: Option<f64>,
     /// Law of traces that name none.

@@ -220,8 +220,8 @@ fn layers_must_be_those_of_the_drawing() {
     assert_eq!((domain.outline.len(), domain.holes.len()), (3, 1));
     assert_eq!(
         with("[layers.fault]\nuse = \"joint\"").unwrap_err(),
-        "case.toml:4: layers.fault: the drawing has nothing on a layer \"fault\", did you mean \"faults\"? Its layers: 0 (1 TEXT), \
-         clean (1 LINE), faults (1 POLYLINE), outline (1 LWPOLYLINE)"
+        "case.toml:4: layers.fault: the drawing has nothing on a layer \"fault\", did you mean \"faults\"? \
+         Its layers: 0 (1 TEXT), clean (1 LINE), faults (1 POLYLINE), outline (1 LWPOLYLINE)"
     );
     for (layers, message) in [
         (

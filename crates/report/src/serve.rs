@@ -1,7 +1,7 @@
 //! Shows pages that still change, to browsers on this machine only.
 //!
 //! A source answers each path; that of a film has two: the page, and the bytes of the film from an offset. A request
-//! must name this machine as its host, so that a page from elsewhere cannot read a film through a name that it controls.
+//! must name this machine as its host, so that a page from elsewhere cannot read a film by a name that it controls.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom, Write};

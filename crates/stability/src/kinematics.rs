@@ -1,8 +1,8 @@
 //! Kinematic checks of a rock face: which joint sets let plane, wedge and toppling failures move, whatever their size.
 //!
-//! A plane slides if it dips out of the face (its dip is less than that of the face, both in the direction of the plane),
-//! more steeply than its friction angle, towards the face within a lateral limit. A wedge slides if the line in which two
-//! planes meet does so, without a lateral limit. Layers topple if their strike is near that of the face and the plane
+//! A plane slides if it dips out of the face (its dip is less than that of the face, both in the direction of the
+//! plane), more steeply than its friction angle, within a lateral limit. A wedge slides if the line in which two planes
+//! meet does so, without a lateral limit. Layers topple if their strike is near that of the face and the plane
 //! normal to them dips less than the face by their friction angle at least: (90° − dip) + φ ≤ dip of the face
 //! (E. Hoek and J. Bray, Rock slope engineering, 1981; R. E. Goodman, Introduction to rock mechanics, 1989;
 //! D. C. Wyllie and C. W. Mah, Rock slope engineering, 2004).

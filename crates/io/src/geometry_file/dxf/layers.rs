@@ -68,7 +68,8 @@ impl<'a> Layers<'a> {
             Some(layer) => {
                 let message = format!(
                     "does not say what layer {layer:?} is; add `[layers.{layer:?}]` with `use = \"joint\"` or \
-                     another use, or `[layers.\"*\"]` with `use = \"ignore\"` for all others. Layers of the drawing: {}",
+                     another use, or `[layers.\"*\"]` with `use = \"ignore\"` for all others. Layers of the drawing: \
+                     {}",
                     layers.listed()
                 );
                 Err(Fault::case(&Key::root().field("layers"), message))
