@@ -1,7 +1,7 @@
 //! ASCII DXF: lines, polylines, arcs, ellipses and splines of a drawing, also those of inserted blocks. Their layer
 //! says what they are: by `layers` of the case, or else loops on `outline`, `hole` and `island`, and joints on all
-//! others, whose law is the one with the name of the layer. Words and signs are counted in notes; other types are errors
-//! unless their layer is ignored.
+//! others, whose law is the one with the name of the layer. Words and signs are counted in notes; other types are
+//! errors unless their layer is ignored.
 //!
 //! The crates that read DXF do not keep the line of an entity, which every message here has.
 
