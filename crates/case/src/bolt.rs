@@ -43,7 +43,8 @@ pub struct Bolt {
     /// Name, for stages that install it.
     #[serde(default)]
     pub name: Option<String>,
-    /// Head and far end (m), both in rock.
+    /// Head and far end (m), both in rock; required, unless a layer of a drawing names the bolt.
+    #[serde(default, skip_serializing_if = "is_nowhere")]
     pub points: [[f64; 2]; 2],
     /// Ends or grouted.
     #[serde(default)]
@@ -76,6 +77,18 @@ pub struct Bolt {
     /// Whether it is there from the start; else a stage installs it by name.
     #[serde(default = "yes")]
     pub active: bool,
+}
+
+impl Bolt {
+    /// Whether the bolt leaves its points to a layer of a drawing.
+    pub fn has_no_points(&self) -> bool {
+        is_nowhere(&self.points)
+    }
+}
+
+/// Whether points are those of a bolt that gives none.
+fn is_nowhere(points: &[[f64; 2]; 2]) -> bool {
+    *points == [[0.0; 2]; 2]
 }
 
 /// A row of equal bolts whose heads lie on the face. Bolts of a pattern `rock` are named `rock_1`, `rock_2`, …; a stage

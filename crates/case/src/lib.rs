@@ -2,6 +2,7 @@
 //! end in `_deg`. Reading it from a file is the work of `io`; building a model from it that of `assemble`.
 
 mod bolt;
+mod drawing;
 mod expand;
 mod fingerprint;
 mod ground;
@@ -10,6 +11,7 @@ mod in_situ;
 mod joint_set;
 pub mod key;
 pub mod limits;
+mod orientation;
 mod pictures;
 mod random;
 mod validate;
@@ -20,11 +22,13 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 pub use bolt::{Anchorage, Bolt, BoltPattern, Support};
+pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_set::{AngleDistribution, Cut, Distribution, JointSet, LawRegion, Section, Side};
+pub use orientation::{AZIMUTH, Orientation, Orientations};
 pub use pictures::{PictureKind, Pictures};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
 pub use validate::Invalid;
@@ -41,8 +45,17 @@ pub type TimeTable = Vec<[f64; 2]>;
 pub struct Case {
     /// Description of the model.
     pub title: String,
+    /// What the reader of a geometry file has converted or left out; notes of the built model begin with it.
+    #[serde(skip)]
+    pub reader_notes: Vec<String>,
     /// Rock outline and joint traces from files.
     pub domain: Domain,
+    /// Layers of the DXF drawing by name, in any letter case; `"*"` is every other layer.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub layers: BTreeMap<String, Layer>,
+    /// How the coordinates of `domain.geometry_file` become metres of the section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transform: Option<Transform>,
     /// The regular triangular mesh of mathematical covers.
     pub mesh: Mesh,
     /// Joint traces.
@@ -206,6 +219,10 @@ pub struct Domain {
     /// JSON (`outline`, `joints`), GeoJSON, DXF, WKT or CSV, relative to the case file.
     #[serde(default)]
     pub geometry_file: Option<PathBuf>,
+    /// Greatest distance (m) of arcs and splines of a DXF drawing from the polylines that they become; default 0.02
+    /// mesh sizes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_tolerance: Option<f64>,
     /// Law of traces that name none.
     #[serde(default)]
     pub joint_law: Option<String>,
@@ -620,6 +637,11 @@ impl WaterSurface {
 }
 
 impl Water {
+    /// Water without a surface yet, all else as a case has it that names nothing.
+    pub fn still() -> Self {
+        Self { level: None, table: None, density: water_density(), joints: true, faces: None }
+    }
+
     /// The surface at the start.
     pub fn surface(&self) -> WaterSurface {
         WaterSurface { level: self.level, table: self.table.clone() }

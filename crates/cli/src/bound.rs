@@ -17,6 +17,7 @@ use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Arguments of `enmm bound`.
 #[derive(Args)]
+#[command(after_help = "Example: enmm bound slope.toml --json")]
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,

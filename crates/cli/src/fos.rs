@@ -24,6 +24,7 @@ use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line}
 
 /// Arguments of `enmm fos`.
 #[derive(Args)]
+#[command(after_help = "Example: enmm fos slope.toml --low 0.8 --high 2")]
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,

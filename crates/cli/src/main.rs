@@ -6,14 +6,18 @@ mod bound;
 mod case;
 mod check;
 mod draw;
+mod edit;
 mod fmu;
 mod fos;
+mod import;
+mod manual;
 mod new;
 mod output;
 mod progress;
 mod report;
 mod run;
 mod sample;
+mod stereonet;
 mod verify;
 mod view;
 
@@ -31,9 +35,22 @@ const FAILED: u8 = 3;
 /// Interrupted by the user.
 const INTERRUPTED: u8 = 130;
 
+/// Examples and exit status, below the list of commands.
+const AFTER_HELP: &str = "\
+Examples:
+  enmm new slope                                 a commented case to begin with
+  enmm import map.dxf -o slope.toml              a case for a drawing
+  enmm edit slope.toml                           the model in a browser while you write
+  enmm run slope.toml                            all stages, results in the folder slope
+  enmm fos slope.toml                            factor of safety
+  enmm fos slope.toml --set joint_law.fault.friction_deg=25
+
+Exit status: 0 done; 1 a verification problem missed its answer; 2 bad input, nothing written; 3 numerical failure, or
+output that could not be written; 130 interrupted.";
+
 /// Explicit numerical manifold method for jointed rock slopes.
 #[derive(Parser)]
-#[command(name = "enmm", version)]
+#[command(name = "enmm", version, after_help = AFTER_HELP)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -44,6 +61,7 @@ enum Command {
     /// Builds a case, runs all its stages and writes the results.
     Run(run::Arguments),
     /// Builds the model of a case and reports its counts, areas, masses and warnings.
+    #[command(after_help = "Example: enmm check slope.toml -o slope")]
     Check {
         #[command(flatten)]
         case: case::CaseArguments,
@@ -56,6 +74,8 @@ enum Command {
     },
     /// Writes a commented case to begin with.
     New(new::Arguments),
+    /// Writes a case for a DXF drawing, with all its layers, and says what is left open.
+    Import(import::Arguments),
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),
     /// Solves problems with known answers and prints computed beside exact values.
@@ -71,12 +91,20 @@ enum Command {
     Bound(bound::Arguments),
     /// Writes a report of results for paper: report_a4.html and, by a browser, report_a4.pdf.
     Report(report::Arguments),
+    /// Draws the joint sets of a case in space and checks which failures they allow.
+    Stereonet(stereonet::Arguments),
+    /// Shows the model of a case in a browser while the case is written, built again at each save.
+    Edit(edit::Arguments),
     /// Shows a run in a browser while it goes on.
     View(view::Arguments),
     /// Times standard models: milliseconds per step and stage, rates, memory, limits of the machine.
     Bench(bench::Arguments),
     /// Prints the JSON Schema of the case file.
     Schema,
+    /// Prints the script by which a shell completes commands and options.
+    Completions(manual::CompletionArguments),
+    /// Writes a manual page of each command.
+    Man(manual::ManArguments),
 }
 
 fn main() -> ExitCode {
@@ -94,6 +122,7 @@ fn execute(command: Command) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, output, json } => check::check(&case, output.as_deref(), json),
         Command::New(arguments) => new::new(&arguments),
+        Command::Import(arguments) => import::import(&arguments),
         Command::Fmu(arguments) => fmu::fmu(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
@@ -101,9 +130,13 @@ fn execute(command: Command) -> ExitCode {
         Command::Draw => draw::draw(),
         Command::Bound(arguments) => bound::bound(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Stereonet(arguments) => stereonet::stereonet(&arguments),
+        Command::Edit(arguments) => edit::edit(arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Schema => schema(),
+        Command::Completions(arguments) => manual::completions(&arguments),
+        Command::Man(arguments) => manual::man(&arguments),
     }
 }
 

@@ -64,19 +64,32 @@ pub fn new(arguments: &Arguments) -> ExitCode {
             if error.kind() == ErrorKind::AlreadyExists { "it is there already".into() } else { error.to_string() };
         return fail(&format!("cannot write {} ({reason}): choose another file with -o", path.display()), BAD_INPUT);
     }
-    let schema = path.with_file_name(SCHEMA);
-    match create(&schema, &format!("{:#}\n", enmm_io::schema())) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            return fail(&format!("cannot write {} ({error}): choose another folder", schema.display()), BAD_INPUT);
-        }
-        _ => {}
+    if let Err(message) = schema_beside(&path) {
+        return fail(&message, BAD_INPUT);
     }
     print_line(&format!("{0}: change it, then: enmm check {0}, enmm run {0}", path.display()));
     ExitCode::SUCCESS
 }
 
+/// Writes the schema beside a case if there is none yet.
+///
+/// # Errors
+/// The system refuses it.
+pub fn schema_beside(case: &Path) -> Result<(), String> {
+    let schema = case.with_file_name(SCHEMA);
+    match create(&schema, &format!("{:#}\n", enmm_io::schema())) {
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+            Err(format!("cannot write {} ({error}): choose another folder", schema.display()))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes a file that is not there yet.
-fn create(path: &Path, text: &str) -> std::io::Result<()> {
+///
+/// # Errors
+/// The file is there already, or the system refuses it.
+pub fn create(path: &Path, text: &str) -> std::io::Result<()> {
     let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
     file.write_all(text.as_bytes())
 }

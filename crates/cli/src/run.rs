@@ -18,6 +18,7 @@ pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
 
 /// Arguments of `enmm run`.
 #[derive(Args)]
+#[command(after_help = "Example: enmm run slope.toml -o results --threads 2")]
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,

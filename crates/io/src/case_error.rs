@@ -77,11 +77,79 @@ pub(super) fn is_nearly_numeric(text: &str) -> bool {
 /// Largest input file (bytes).
 const SIZE_MAX: u64 = 1 << 28;
 
+/// First bytes of a binary drawing.
+const BINARY_DXF: &[u8] = b"AutoCAD Binary DXF";
+
 /// Reads a text file.
 ///
 /// # Errors
 /// A message without the file's name: the file cannot be opened, is too large, or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, String> {
+    String::from_utf8(read_bytes(path)?).map_err(|error| {
+        let position = error.utf8_error().valid_up_to();
+        format!("byte {position} is not UTF-8 text, which input files must be; save the file as UTF-8 text")
+    })
+}
+
+/// Reads a DXF drawing, which before 2007 is in the code page that it names.
+///
+/// # Errors
+/// A message without the file's name: the file cannot be opened, is too large or binary, or its code page is not read.
+pub fn read_drawing(path: &Path) -> Result<String, String> {
+    let bytes = read_bytes(path)?;
+    if bytes.starts_with(BINARY_DXF) {
+        return Err("it is a binary DXF, which is not read; save the drawing as ASCII DXF".to_string());
+    }
+    let bytes = match String::from_utf8(bytes) {
+        Ok(text) => return Ok(unescaped(text)),
+        Err(error) => error.into_bytes(),
+    };
+    let page = code_page(&bytes);
+    if page.is_some_and(|page| !page.eq_ignore_ascii_case("ANSI_1252")) {
+        let page = page.unwrap_or_default();
+        return Err(format!(
+            "it is text in the code page {page:?}, and UTF-8 and ANSI_1252 are read; save it as DXF 2007"
+        ));
+    }
+    Ok(unescaped(bytes.into_iter().map(western).collect()))
+}
+
+/// A text with the signs that DXF writes as `\\U+00E4`.
+fn unescaped(text: String) -> String {
+    const MARK: &str = "\\U+";
+    if !text.contains(MARK) {
+        return text;
+    }
+    let mut parts = text.split(MARK);
+    let mut whole = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let code = part.get(..4).and_then(|digits| u32::from_str_radix(digits, 16).ok());
+        match code.and_then(char::from_u32).filter(|sign| !sign.is_control()) {
+            Some(sign) => whole.extend([sign.to_string().as_str(), &part[4..]]),
+            None => whole.extend([MARK, part]),
+        }
+    }
+    whole
+}
+
+/// The code page that the header of a drawing names.
+fn code_page(bytes: &[u8]) -> Option<&str> {
+    let start = bytes.windows(12).position(|part| part == b"$DWGCODEPAGE")?;
+    let line = bytes[start..].split(|byte| *byte == b'\n').nth(2)?;
+    std::str::from_utf8(line).ok().map(str::trim)
+}
+
+/// Signs of ANSI_1252 between 0x80 and 0x9f, where it is not Latin-1.
+const WESTERN: [char; 32] = [
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}', '\u{90}', '‘', '’',
+    '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+];
+
+fn western(byte: u8) -> char {
+    byte.checked_sub(0x80).and_then(|k| WESTERN.get(usize::from(k)).copied()).unwrap_or(char::from(byte))
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error: std::io::Error| format!("cannot read the file ({error}); check its path and permissions");
     let mut bytes = Vec::new();
     let file = open_input(path).map_err(unreadable)?;
@@ -89,8 +157,5 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     if bytes.len() as u64 > SIZE_MAX {
         return Err(format!("the file has more than {SIZE_MAX} bytes, the limit; split or thin it"));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let position = error.utf8_error().valid_up_to();
-        format!("byte {position} is not UTF-8 text, which input files must be; save the file as UTF-8 text")
-    })
+    Ok(bytes)
 }

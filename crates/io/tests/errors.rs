@@ -22,8 +22,8 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, cut, \
          domain, ensemble, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, \
-         law_region, load, mesh, monitor, output, port, quiet, random, random_correlation, report, rock, \
-         section, solver, stage, title, water; rename or remove it",
+         law_region, layers, load, mesh, monitor, output, port, quiet, random, random_correlation, report, rock, \
+         section, solver, stage, title, transform, water; rename or remove it",
     );
 }
 
@@ -104,6 +104,32 @@ fn wrong_type_is_quoted_back_in_the_right_one() {
         "seed = 7",
         "seed = 7.0",
         "LINE: joint_set[0].seed: is the number 7.0, must be a whole number; write `seed = 7`",
+    );
+}
+
+/// A unit in the value is worked out, and a word that is like none of the known ones gets no guess.
+#[test]
+fn units_and_far_words_are_answered() {
+    let young = "young = 5e10";
+    for (to, remedy) in [("20 GPa", "20e9"), ("20GPa", "20e9"), ("350 MPa", "350e6"), ("1,5 kPa", "1.5e3")] {
+        let message =
+            format!("LINE: rock.granite.young: is the string {to:?}, must be a number; write `young = {remedy}`");
+        assert_refused(young, &format!("young = {to:?}"), &message);
+    }
+    assert_refused(
+        young,
+        "young = \"20 bananas\"",
+        "LINE: rock.granite.young: is the string \"20 bananas\", must be a number; write `young = 1e10`",
+    );
+    assert_refused(
+        "kind = \"static\"",
+        "kind = \"quick\"",
+        "LINE: stage[0].kind: is \"quick\", must be one of static, dynamic",
+    );
+    let error = error_of(&edited("[[0.0, 0.0], [10.0, 0.0], [10.0, 5.0], [0.0, 5.0]]", "[[0, 0], [5, 5], [10, 10]]"));
+    assert_eq!(
+        error,
+        "slope.toml:4: domain.outline: its 3 points lie on one line, a loop has an area; add a point beside it"
     );
 }
 
@@ -501,7 +527,7 @@ fn degenerate_shapes_are_refused() {
     assert_refused(
         "region = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0]]",
         "region = [[0.0, 0.0], [10.0, 10.0], [5.0, 5.0]]",
-        "LINE: joint_set[0].region: the polygon has no area; give at least 3 points that are not on one line",
+        "LINE: joint_set[0].region: its 3 points lie on one line, a loop has an area; add a point beside it",
     );
     assert_refused(
         "edge = [[0.0, 0.0], [10.0, 0.0]]",
@@ -513,7 +539,7 @@ fn degenerate_shapes_are_refused() {
 #[test]
 fn text_that_is_not_toml_names_the_line() {
     assert_refused("size = 1.0", "size = = 1.0", "LINE: not TOML: extra `=`, expected nothing; correct the line");
-    assert_refused("[gravity]", "[mesh]", "LINE: not TOML: duplicate key; correct the line");
+    assert_refused("[gravity]", "[mesh]", "LINE: not TOML: `mesh` stands twice in its table; remove one");
 }
 
 #[test]

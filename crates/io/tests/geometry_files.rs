@@ -1,4 +1,4 @@
-//! Outlines and joint traces are read from JSON, GeoJSON and DXF; what is not used is reported, what is wrong located.
+//! Outlines and joint traces are read from JSON and GeoJSON; what is not used is reported, what is wrong located.
 
 use crate::support::{with_geometry, with_geometry_and};
 use enmm_io::LoadedCase;
@@ -187,91 +187,4 @@ fn geojson_that_cannot_be_used_is_located() {
         error(&geojson("null").replace("[1, 1]], [[0, 2]", "[1, \"NaN\"]], [[0, 2]")),
         format!("g.geojson:8: {message}")
     );
-}
-
-/// A drawing: a line on layer clean, a closed outline, an old-style closed polyline on layer faults, a circle.
-const DXF: &str = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n\
-    0\nLINE\n8\nclean\n10\n0.0\n20\n1.0\n11\n5.0\n21\n6.0\n\
-    0\nLWPOLYLINE\n8\noutline\n90\n3\n70\n1\n10\n0\n20\n0\n10\n9\n20\n0\n42\n0\n10\n9\n20\n9\n\
-    0\nPOLYLINE\n8\nfaults\n66\n1\n70\n1\n0\nVERTEX\n10\n1\n20\n1\n0\nVERTEX\n10\n2\n20\n1\n30\n4\n\
-    0\nVERTEX\n10\n2\n20\n2\n0\nSEQEND\n\
-    0\nCIRCLE\n10\n0\n20\n0\n40\n1\n0\nENDSEC\n0\nEOF\n";
-
-#[test]
-fn dxf_gives_lines_by_layer_and_closed_loops() {
-    for text in [DXF.to_string(), DXF.replace('\n', "\r\n")] {
-        let loaded = with_geometry("g.dxf", &text).unwrap();
-        assert_eq!(loaded.case.domain.outline, TRIANGLE);
-        let expected = [
-            (vec![[0.0, 1.0], [5.0, 6.0]], Some("clean")),
-            (vec![[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 1.0]], None),
-        ];
-        assert_eq!(traces(&loaded), expected);
-        let warnings = [
-            "1 CIRCLE entities not used",
-            "1 points whose height is not used",
-            "1 traces on layer \"faults\", which is no joint law, take the default law",
-        ];
-        assert_eq!(loaded.warnings, warnings.map(|warning| format!("g.dxf: {warning}")));
-    }
-}
-
-#[test]
-fn dxf_layers_hole_and_island_give_loops() {
-    let hole = with_geometry("g.dxf", &DXF.replace("faults", "Hole")).unwrap().case.domain;
-    assert_eq!(hole.holes, [[[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]]);
-    let island = with_geometry("g.dxf", &DXF.replace("faults", "ISLAND")).unwrap().case.domain;
-    assert_eq!(island.islands, [[[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]]);
-}
-
-#[test]
-fn dxf_in_other_units_is_reported() {
-    let loaded = with_geometry("g.dxf", &DXF.replace("70\n6", "70\n4")).unwrap();
-    assert_eq!(loaded.warnings[0], "g.dxf: $INSUNITS is 4, not 6 (metres); coordinates are taken as metres");
-}
-
-#[test]
-fn dxf_that_cannot_be_used_is_located() {
-    let limit = "must be a finite number of at most 1e9 m in magnitude; correct it or move the origin";
-    for (from, to, message) in [
-        (
-            "42\n0",
-            "42\n0.5",
-            "g.dxf:44: LWPOLYLINE has an arc (bulge 0.5), only straight lines are read; replace arcs by short lines",
-        ),
-        ("10\n0.0", "10\nNaN", &format!("g.dxf:20: entity[0][0]: x is NaN m, {limit}")),
-        ("11\n5.0", "11\nx", "g.dxf:24: \"x\" of group 11 is no number; correct it"),
-        ("11\n5.0\n", "", "g.dxf:16: LINE has no coordinate 11; the file is damaged, save it again"),
-        ("0\nSEQEND\n", "", "g.dxf:50: POLYLINE without SEQEND after its vertices; the file is damaged, save it again"),
-        (
-            "70\n1\n10",
-            "70\n0\n10",
-            "g.dxf:28: entity[1]: LWPOLYLINE on layer \"outline\" is open, a loop must be closed; close it",
-        ),
-        ("8\nclean", "8\nHOLE", "g.dxf:16: entity[0]: LINE on layer \"HOLE\" is open, a loop must be closed; close it"),
-        (
-            "8\nfaults",
-            "8\nOUTLINE",
-            "g.dxf:50: entity[2]: is a second outline, there can be 1; move it to layer \"ISLAND\"",
-        ),
-        (
-            "70\n1\n0\nVERTEX",
-            "70\n2\n0\nVERTEX",
-            "g.dxf:50: POLYLINE fitted with a curve, only straight lines are read; explode it or straighten it",
-        ),
-        (
-            "8\nclean",
-            "8\nclean\n230\n-1.0",
-            "g.dxf:20: LINE is not in the x-y plane (extrusion -1.0); draw it seen from above",
-        ),
-        ("ENTITIES", "TABLES", "g.dxf:1: no section ENTITIES, which holds the lines; save the drawing as ASCII DXF"),
-        ("0\nSECTION", "x\nSECTION", "g.dxf:1: the line is no group code of DXF, a whole number; save it again"),
-    ] {
-        assert!(DXF.contains(from), "{from:?}");
-        assert_eq!(with_geometry("g.dxf", &DXF.replacen(from, to, 1)).unwrap_err(), *message);
-    }
-    let cut = with_geometry("g.dxf", "0\nSECTION\n2").unwrap_err();
-    assert_eq!(cut, "g.dxf:3: the value of group 2 is missing; the file is cut off");
-    let binary = with_geometry("g.dxf", "AutoCAD Binary DXF\r\n").unwrap_err();
-    assert_eq!(binary, "g.dxf:1: binary DXF, which is not read; save the drawing as ASCII DXF");
 }

@@ -61,7 +61,8 @@ closure_max = 1e-4
 /// A case as users write it, with every numeric key that reading turns into others.
 const SHORT: &str = r#"
 title = "Bolts, cuts and sets in few words"
-domain = { outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]], joint_law = "clean" }
+domain = { outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]], joint_law = "clean", curve_tolerance = 0.1 }
+transform = { scale = 0.001, shift = [1.0, 2.0] }
 mesh = { size = 1.0 }
 section = { azimuth_deg = 90.0 }
 in_situ = { k0 = 0.6, density = 2600.0 }

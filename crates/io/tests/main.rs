@@ -2,6 +2,7 @@
 
 #[path = "../../../tests/common/mod.rs"]
 mod common;
+mod drawings;
 mod errors;
 mod expand;
 mod geometry_files;

@@ -219,6 +219,7 @@ pub fn probability_chapter(records: &Records) -> String {
     let beta = plain(&json["beta"], "", Three).map_or(Cell::Empty, Cell::from);
     let by = match text(&json["ensemble"]["output"]) {
         "factor_of_safety" => "strength reduction of each sample",
+        "failure" => "limit analysis, and strength reduction where that leaves it open",
         _ => "limit analysis of each sample",
     };
     let rows = [

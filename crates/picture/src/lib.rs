@@ -24,6 +24,7 @@ mod signs;
 mod slope;
 mod stage;
 mod stage_axis;
+mod stereonet;
 mod svg;
 
 use std::io;
@@ -46,6 +47,7 @@ pub use stage::{
     StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
 pub use stage_axis::StageStart;
+pub use stereonet::{Projection, Stereonet};
 
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]

@@ -22,8 +22,8 @@ pub use data::{
     Note, Outline, Quantity, Structures, SupportFrame, Trial, TrialTable,
 };
 pub use error::FilmError;
-pub use page::{live_page, write_page};
-pub use serve::Server;
+pub use page::{edit_page, live_page, write_page};
+pub use serve::{Answer, Server, Source};
 pub use writer::FilmWriter;
 
 /// Name of the film in the directory of a run.

@@ -11,6 +11,7 @@ use crate::chunk::{self, Chunks, MAGIC};
 use crate::error::FilmError;
 use crate::writer::{forget, temporary_beside};
 
+const EDITOR: &str = include_str!("../viewer/editor.html");
 const PAGE: &str = include_str!("../viewer/viewer.html");
 const STYLE: &str = include_str!("../viewer/viewer.css");
 /// Scripts in the order in which a page runs them.
@@ -66,6 +67,11 @@ fn fill(film: &Path, temporary: &Path) -> Result<(), FilmError> {
 /// The page without a film, which requests one from its server.
 pub fn live_page() -> String {
     halves().concat()
+}
+
+/// The page of `enmm edit`, which shows the pages of models as they are built.
+pub fn edit_page() -> &'static str {
+    EDITOR
 }
 
 /// The page before and behind the film.

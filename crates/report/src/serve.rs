@@ -1,13 +1,13 @@
-//! Shows a film that still grows, to browsers on this machine only.
+//! Shows pages that still change, to browsers on this machine only.
 //!
-//! Two answers are all there is: the page, and the bytes of the film from an offset. A request must name this machine
-//! as its host, so that a page from elsewhere cannot read a film through a name that it controls.
+//! A source answers each path; that of a film has two: the page, and the bytes of the film from an offset. A request
+//! must name this machine as its host, so that a page from elsewhere cannot read a film by a name that it controls.
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -27,11 +27,42 @@ const PAUSE: Duration = Duration::from_millis(50);
 /// Browsers that are answered side by side; others wait for their turn.
 const CLIENTS_MAX: usize = 64;
 
-/// A server for one film.
-#[derive(Debug)]
+/// Answers to the requests of browsers.
+pub trait Source: Send + Sync {
+    /// The answer to a path, such as `/`, with the number behind `?from=` if it has one.
+    fn answer(&self, path: &str, from: Option<u64>) -> Answer;
+}
+
+/// An answer of a source.
+pub enum Answer {
+    /// A body of a type.
+    Body {
+        /// Its media type.
+        kind: &'static str,
+        /// Its length (bytes).
+        length: u64,
+        /// Its bytes.
+        body: Box<dyn Read>,
+    },
+    /// A status without a body, such as `404 Not Found`.
+    Status(&'static str),
+}
+
+impl Answer {
+    /// Status of a path that a source does not have.
+    pub const NOT_FOUND: Self = Self::Status("404 Not Found");
+
+    /// An answer that is there as a whole.
+    pub fn whole(kind: &'static str, bytes: impl AsRef<[u8]> + 'static) -> Self {
+        let length = bytes.as_ref().len() as u64;
+        Self::Body { kind, length, body: Box::new(Cursor::new(bytes)) }
+    }
+}
+
+/// A server for one source.
 pub struct Server {
     listener: TcpListener,
-    film: PathBuf,
+    source: Arc<dyn Source>,
 }
 
 impl Server {
@@ -40,7 +71,15 @@ impl Server {
     /// # Errors
     /// When the system refuses it, as for a port that is in use.
     pub fn open(film: &Path, port: u16) -> io::Result<Self> {
-        Ok(Self { listener: TcpListener::bind((Ipv4Addr::LOCALHOST, port))?, film: film.to_owned() })
+        Self::of(Arc::new(FilmSource { film: film.to_owned() }), port)
+    }
+
+    /// Listens on this machine at a port, or at one that is free for port 0, for a source.
+    ///
+    /// # Errors
+    /// As [`Server::open`].
+    pub fn of(source: Arc<dyn Source>, port: u16) -> io::Result<Self> {
+        Ok(Self { listener: TcpListener::bind((Ipv4Addr::LOCALHOST, port))?, source })
     }
 
     /// Where it listens.
@@ -86,22 +125,41 @@ impl Server {
         if ![format!("127.0.0.1:{port}"), format!("localhost:{port}")].contains(&request.host) {
             return refuse(&mut out, "403 Forbidden");
         }
-        match request.path.split_once("?from=") {
-            None if request.path == "/" => {
-                let page = live_page();
-                send(&mut out, "text/html; charset=utf-8", page.len() as u64, &mut page.as_bytes())
-            }
-            Some(("/film", from)) => match from.parse() {
-                Ok(from) => match self.film_from(from) {
-                    Ok(piece) => send(&mut out, "application/octet-stream", piece.length, &mut piece.bytes()),
-                    Err(status) => refuse(&mut out, status),
-                },
-                Err(_) => refuse(&mut out, "400 Bad Request"),
+        let (path, from) = match request.path.split_once("?from=") {
+            None => (request.path.as_str(), None),
+            Some((path, from)) => match from.parse() {
+                Ok(from) => (path, Some(from)),
+                Err(_) => return refuse(&mut out, "400 Bad Request"),
             },
-            _ => refuse(&mut out, "404 Not Found"),
+        };
+        match self.source.answer(path, from) {
+            Answer::Body { kind, length, mut body } => send(&mut out, kind, length, &mut body),
+            Answer::Status(status) => refuse(&mut out, status),
         }
     }
+}
 
+/// The page of a film, and its bytes.
+struct FilmSource {
+    film: PathBuf,
+}
+
+impl Source for FilmSource {
+    fn answer(&self, path: &str, from: Option<u64>) -> Answer {
+        match (path, from) {
+            ("/", None) => Answer::whole("text/html; charset=utf-8", live_page()),
+            ("/film", Some(from)) => match self.film_from(from) {
+                Ok(piece) => {
+                    Answer::Body { kind: "application/octet-stream", length: piece.length, body: piece.bytes() }
+                }
+                Err(status) => Answer::Status(status),
+            },
+            _ => Answer::NOT_FOUND,
+        }
+    }
+}
+
+impl FilmSource {
     /// A piece of the film, nothing of one that is yet to come.
     ///
     /// # Errors

@@ -107,9 +107,10 @@ const COLOURS = [
   { key: "joint", name: "Joint state" },
 ];
 
-// What a film has to colour by.
+// What a film has to colour by; a model as it is built has not moved.
 function coloursOf(film) {
-  const known = { displacement: true, block: true, joint: film.frames.some((frame) => frame.edges?.some(Boolean)) };
+  const moves = film.head.command !== "edit";
+  const known = { displacement: moves, block: true, joint: film.frames.some((frame) => frame.edges?.some(Boolean)) };
   return COLOURS.filter(({ key }) => known[key] || film.head.quantities.includes(key));
 }
 

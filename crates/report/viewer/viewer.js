@@ -10,7 +10,7 @@ class Viewer {
     this.slope = new Slope(by("slope"), film);
     this.chart = new Chart(by("chart"));
     this.player = new Player(film, () => this.refresh());
-    this.colour = COLOURS[0];
+    this.colour = coloursOf(film)[0];
     this.choice = { block: null, monitor: null };
     this.settings = { magnification: 1, sinceStage: false, logarithmic: false, structures: true };
     this.marks = [];

@@ -13,13 +13,16 @@ mod found;
 pub mod history;
 mod input;
 mod mechanism_page;
+mod model_page;
 pub mod rock_mass;
 mod run;
+mod stereonet;
 pub mod summary;
 pub mod vtu;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};
 pub use check::check;
+pub use enmm_picture::Projection;
 pub use ensemble::{
     Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns,
     ensemble,
@@ -28,5 +31,7 @@ pub use folder::{Folder, STORE, check_output, check_owner, is_result, make_place
 pub use fos::{FosError, FosOptions, fos};
 pub use input::input_record;
 pub use mechanism_page::{write_bound_page, write_bracket_page};
+pub use model_page::write_model_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, draw_checked, run};
+pub use stereonet::{NetOptions, apparent, stereonet};
 pub use summary::{RunStatus, Summary};

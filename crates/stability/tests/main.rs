@@ -8,6 +8,7 @@ mod fos_against_bound;
 mod fos_block_on_incline;
 mod hoek_brown_slope;
 mod issue_a_fault_a_millimetre_short_held_a_slope;
+mod kinematics;
 mod limit_analysis;
 mod soil_slope;
 mod tutorials;

@@ -97,12 +97,15 @@ impl Locator<'_> {
         let pieces: Vec<OuterPiece> =
             self.outlines.pieces.iter().filter(on_edge).map(|p| self.outer_piece(p)).collect();
         if pieces.is_empty() {
+            let middle = a + (b - a) / 2.0;
+            let outer = self.outlines.pieces.iter().filter(|piece| piece.opposite.is_none()).map(|piece| piece.a);
+            let near = outer.min_by(|p, q| (p - middle).norm().total_cmp(&(q - middle).norm())).unwrap_or(middle);
             return Err(Invalid {
                 key: key.into(),
                 message: format!(
                     "no outer boundary of the rock lies on the segment ({}, {})–({}, {}): give two points of one \
-                     straight side of the outline",
-                    a.x, a.y, b.x, b.y
+                     straight side of the outline, which is nearest at ({:.6}, {:.6}); y points up",
+                    a.x, a.y, b.x, b.y, near.x, near.y
                 ),
             });
         }

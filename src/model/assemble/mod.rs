@@ -70,7 +70,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     let geometry::Plane { mesh, mut arrangement, joints, ends, crumbs } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
-    let notes = warnings::notes(&noding, &ends, &crumbs);
+    let notes = [case.reader_notes.clone(), warnings::notes(&noding, &ends, &crumbs)].concat();
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);

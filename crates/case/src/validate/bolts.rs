@@ -16,6 +16,11 @@ pub fn validate_bolts(key: &Key, bolts: &[Bolt]) -> Check {
 }
 
 fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
+    if bolt.has_no_points() {
+        let message = "is missing (head and far end); add `points = [[1.0, 1.0], [5.0, 0.0]]`, or name the bolt in a \
+                       layer of the drawing";
+        return fail(&key.field("points"), message);
+    }
     segment(&key.field("points"), &bolt.points)?;
     let force = Range::above(0.0).to(1e12);
     let length = Range::above(0.0).to(COORDINATE_MAX);

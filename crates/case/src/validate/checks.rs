@@ -172,12 +172,24 @@ pub fn points(key: &Key, list: &[[f64; 2]], least: usize, what: &str) -> Check {
     unusable.map_or(Ok(()), |i| point(&key.index(i), &list[i]))
 }
 
-/// Checks a loop, whose crossings and area are the builder's to judge.
+/// Checks a loop, whose crossings are the builder's to judge.
 ///
 /// # Errors
-/// There are fewer than three points, or one is unusable.
+/// There are fewer than three points, one is unusable, or all lie on one line.
 pub fn polygon(key: &Key, ring: &[[f64; 2]]) -> Check {
-    points(key, ring, 3, "a loop")
+    points(key, ring, 3, "a loop")?;
+    let [x0, y0] = ring[0];
+    let off = |p: &[f64; 2]| libm::hypot(p[0] - x0, p[1] - y0);
+    let far = ring.iter().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(&ring[0]);
+    let (size, [dx, dy]) = (off(far), [far[0] - x0, far[1] - y0]);
+    let on_line = |&[x, y]: &[f64; 2]| ((x - x0) * dy - (y - y0) * dx).abs() <= 1e-12 * size * size;
+    if ring.iter().all(on_line) {
+        return fail(
+            key,
+            format!("its {} points lie on one line, a loop has an area; add a point beside it", ring.len()),
+        );
+    }
+    Ok(())
 }
 
 /// Checks a polygon that selects parts of the rock.

@@ -3,6 +3,7 @@
 
 pub(crate) mod bolts;
 pub(crate) mod checks;
+mod drawing;
 mod ground;
 mod joint_sets;
 mod joints;
@@ -50,6 +51,7 @@ impl Case {
             .try_for_each(|(k, name)| harmless(&root.field("joint_set").index(k).field("name"), name))?;
         self.rocks.keys().try_for_each(|name| harmless(&root.field("rock"), name))?;
         self.joint_laws.keys().try_for_each(|name| harmless(&root.field("joint_law"), name))?;
+        self.validate_drawing()?;
         domain(&root.field("domain"), &self.domain)?;
         mesh(&root.field("mesh"), &self.mesh)?;
         self.validate_joints(&root)?;
@@ -85,7 +87,8 @@ impl Case {
         self.validate_monitors(&root.field("monitor"))?;
         output(&root.field("output"), &self.output)?;
         solver(&root.field("solver"), &self.solver)?;
-        random::validate_random(&root, self)
+        random::validate_random(&root, self)?;
+        self.validate_drawing_is_used()
     }
 
     /// Returns the law of joints that name none: `domain.joint_law`, else the only law of the case, else none.

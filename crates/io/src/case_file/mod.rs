@@ -5,12 +5,12 @@ mod reader;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::case_error::{CaseError, read_text};
-use super::geometry_file::{self, Format, Geometry, Trace};
+use super::case_error::{CaseError, read_drawing, read_text};
+use super::geometry_file::{self, Fault, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
 use super::record_file;
 use enmm::cosimulation::Cosimulation;
-use enmm::model::case::{Case, Invalid, JointTrace};
+use enmm::model::case::{Case, Invalid, JointTrace, Orientations};
 
 /// Largest text of a case (bytes): some 100 000 traces, which take two seconds to read. Files of geometry and records
 /// are read far faster.
@@ -28,6 +28,8 @@ pub struct LoadedCase {
     pub source: CaseSource,
     /// Fingerprint of `case`, 16 hexadecimal digits: equal for equal models, however their files are written.
     pub hash: String,
+    /// Planes in space of joint sets and joints, which the case holds as traces.
+    pub orientations: Orientations,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Values that took the place of those of the case file, as `key=value`.
@@ -47,6 +49,7 @@ impl LoadedCase {
 
     fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
         let typed = case.clone();
+        let orientations = case.orientations();
         let told = case.expand().map_err(|invalid| source.locate(&invalid.key, &invalid.message))?;
         warnings.extend(told.notes);
         source.origins = told.origins;
@@ -54,7 +57,7 @@ impl LoadedCase {
         case.validate().map_err(located)?;
         let hash = case.fingerprint().map_err(located)?;
         let settings = source.settings.values().cloned().collect();
-        Ok(Self { case, typed, source, hash, warnings, settings })
+        Ok(Self { case, typed, source, hash, orientations, warnings, settings })
     }
 
     /// Builds the model of the case for a host that drives it.
@@ -212,8 +215,10 @@ fn merge_record_files(case: &mut Case, source: &mut CaseSource, base_dir: &Path)
     Ok(())
 }
 
-/// Moves outline, loops and traces of `domain.geometry_file` into the case; returns the warnings.
+/// Moves all that `domain.geometry_file` holds into the case, removes the keys that say how, and returns the warnings.
 fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<Vec<String>, CaseError> {
+    let located = |source: &CaseSource, invalid: Invalid| source.locate(&invalid.key, &invalid.message);
+    case.validate_drawing().map_err(|invalid| located(source, invalid))?;
     let Some(name) = case.domain.geometry_file.take() else { return Ok(Vec::new()) };
     let path = base_dir.join(name);
     source.geometry_file = path.display().to_string();
@@ -223,8 +228,21 @@ fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path
         let message = format!("the outline is also in {:?}, only one can be; remove this one", source.geometry_file);
         return Err(source.locate("domain.outline", &message));
     }
-    let warnings = geometry.warnings.iter().map(|warning| format!("{}: {warning}", source.geometry_file)).collect();
+    if geometry.water.is_some()
+        && let Some(key) = case.water.as_ref().and_then(|water| {
+            let given = [("water.level", water.level.is_some()), ("water.table", water.table.is_some())];
+            given.into_iter().find_map(|(key, is_given)| is_given.then_some(key))
+        })
+    {
+        let message = format!("the water table is also in {:?}, only one can be; remove it", source.geometry_file);
+        return Err(source.locate(key, &message));
+    }
+    let named = |text: &String| format!("{}: {text}", source.geometry_file);
+    let warnings = geometry.warnings.iter().map(named).collect();
+    case.reader_notes.extend(geometry.notes.iter().map(named));
     merge(case, source, geometry);
+    case.layers.clear();
+    (case.transform, case.domain.curve_tolerance) = (None, None);
     Ok(warnings)
 }
 
@@ -232,12 +250,15 @@ fn read_geometry_file(case: &Case, source: &CaseSource, path: &Path) -> Result<G
     let file = &source.geometry_file;
     let located = |message: String| source.locate("domain.geometry_file", &format!("{file:?}: {message}"));
     let format = Format::of(path).map_err(located)?;
-    let text = read_text(path).map_err(located)?;
-    geometry_file::parse(format, file, &text, case)
+    let text = if format == Format::Dxf { read_drawing(path) } else { read_text(path) }.map_err(located)?;
+    geometry_file::parse(format, file, &text, case).map_err(|fault| match fault {
+        Fault::File(error) => error,
+        Fault::Case(invalid) => source.locate(&invalid.key, &invalid.message),
+    })
 }
 
 fn merge(case: &mut Case, source: &mut CaseSource, geometry: Geometry) {
-    let Geometry { outline, holes, islands, traces, lines, .. } = geometry;
+    let Geometry { outline, holes, islands, traces, water, bolts, lines, .. } = geometry;
     source.geometry_lines = lines;
     if let Some((points, place)) = outline {
         case.domain.outline = points;
@@ -259,5 +280,15 @@ fn merge(case: &mut Case, source: &mut CaseSource, geometry: Geometry) {
         });
         source.note(key, place);
         case.joints.push(JointTrace { points, law });
+    }
+    if let Some((points, place)) = water {
+        case.put_water_table(points);
+        source.note("water.table".to_string(), place);
+    }
+    for (name, found) in bolts {
+        let points: Vec<_> = found.iter().map(|(points, _)| *points).collect();
+        for (at, (_, place)) in case.put_bolts(&name, &points).into_iter().zip(found) {
+            source.note(format!("bolt[{at}].points"), place);
+        }
     }
 }

@@ -32,7 +32,7 @@ pub fn parse(document: Document) -> Result<Geometry, CaseError> {
     let (holes, islands) = (loops("holes")?, loops("islands")?);
     let traces = loops("joints")?.into_iter().map(|points| Trace { points, law: None }).collect();
     let warnings = object.keys().filter_map(|key| misspelled(key)).collect();
-    Ok(Geometry { outline, holes, islands, traces, warnings, lines: document.lines })
+    Ok(Geometry { outline, holes, islands, traces, warnings, lines: document.lines, ..Geometry::default() })
 }
 
 fn points(document: &Document, key: &Key, value: &Value) -> Result<Located, CaseError> {

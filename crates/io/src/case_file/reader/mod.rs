@@ -15,7 +15,7 @@ use self::expected::{Expected, Fields, Schema, assigned, example, literal};
 use crate::case_error::CaseError;
 use crate::lines::{LineMap, LineStarts};
 use enmm::model::Case;
-use enmm::model::case::key::{Key, list, nearest};
+use enmm::model::case::key::{Key, edit_distance, list, nearest};
 
 /// A case with the lines of its keys, and the settings by their keys.
 type Read = (Case, LineMap, BTreeMap<String, String>);
@@ -33,6 +33,9 @@ pub fn read(text: &str, file: &str, settings: &[impl AsRef<str>]) -> Result<Read
             return syntax(line, message);
         }
         let line = error.span().map_or(1, |span| starts.line(span.start));
+        if let Some(key) = error.span().and_then(|span| text.get(span)).filter(|_| error.message() == "duplicate key") {
+            return syntax(line, format!("not TOML: `{key}` stands twice in its table; remove one"));
+        }
         syntax(line, format!("not TOML: {}; correct the line", one_line(error.message())))
     })?;
     let schema = crate::schema();
@@ -148,6 +151,10 @@ impl Reader<'_> {
         }
         let near = nearest(text, names.iter().copied()).unwrap_or_default();
         let known = list(names.iter().copied());
+        // Half of the letters are not alike by chance alone.
+        if 2 * edit_distance(text, near) >= text.chars().count().max(1) {
+            return self.fail(key, format!("is {text:?}, must be one of {known}"));
+        }
         self.fail(key, format!("is {text:?}, did you mean {near:?}? It must be one of {known}"))
     }
 }
@@ -158,7 +165,9 @@ fn meant(expected: &Expected, found: &DeValue) -> Option<String> {
         (Expected::Number | Expected::Integer(_), DeValue::String(text)) => {
             let text = text.trim();
             let points = if text.contains('.') { text.to_owned() } else { text.replace(',', ".") };
-            let value: f64 = points.parse().ok().filter(|value: &f64| value.is_finite())?;
+            let Some(value) = points.parse().ok().filter(|value: &f64| value.is_finite()) else {
+                return in_si(&points).filter(|_| matches!(expected, Expected::Number));
+            };
             let whole = points.parse::<u64>().is_ok();
             (matches!(expected, Expected::Number) && value.is_finite() || whole).then_some(points)
         }
@@ -174,6 +183,20 @@ fn meant(expected: &Expected, found: &DeValue) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// A number with a unit as the number in SI units: `20 GPa` is `20e9`.
+fn in_si(text: &str) -> Option<String> {
+    const PREFIXES: [(&str, &str); 5] = [("", ""), ("k", "e3"), ("M", "e6"), ("G", "e9"), ("m", "e-3")];
+    const UNITS: [&str; 5] = ["Pa", "N", "m", "s", "N/m"];
+    let end = text.find(|c: char| !(c.is_ascii_digit() || ".+-".contains(c)))?;
+    let (number, unit) = (&text[..end], text[end..].trim());
+    number.parse::<f64>().ok().filter(|value| value.is_finite())?;
+    if matches!(unit, "°" | "deg" | "degrees" | "kg/m3" | "kg/m³") {
+        return Some(number.to_owned());
+    }
+    let power = PREFIXES.iter().find(|(prefix, _)| unit.strip_prefix(prefix).is_some_and(|unit| UNITS.contains(&unit)));
+    power.map(|(_, power)| format!("{number}{power}"))
 }
 
 /// Longest text of a value that is quoted in a message (characters).

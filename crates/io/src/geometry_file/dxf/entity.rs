@@ -1,26 +1,16 @@
-//! Entities of a DXF drawing and the points of those that are lines.
+//! Points of the entities of a DXF drawing that are lines or curves.
 
+use super::curve::{Arc, CHORDS_MAX, Spline};
 use super::groups::{Group, Groups};
+use super::records::{Record, find};
 use crate::case_error::CaseError;
+use crate::geometry_file::affine::Affine;
 use enmm::model::case::PointList;
-
-/// One entity; a polyline comprises its vertices.
-pub struct Entity<'a> {
-    /// Type, such as `LINE`.
-    pub kind: &'a str,
-    /// Layer; `0` if none is given.
-    pub layer: &'a str,
-    /// Line of the type, counted from 1.
-    pub line: usize,
-    groups: &'a [Group<'a>],
-    vertices: Vec<&'a [Group<'a>]>,
-    ended: bool,
-}
 
 /// Points of an entity.
 #[derive(Debug, Default)]
 pub struct Shape {
-    /// The points.
+    /// The points (m).
     pub points: PointList,
     /// Line of each point, counted from 1.
     pub lines: Vec<usize>,
@@ -28,150 +18,318 @@ pub struct Shape {
     pub closed: bool,
     /// How many points have a height, which is not used.
     pub high: usize,
+    /// How many arcs and splines have become polylines.
+    pub curves: usize,
 }
 
-/// Returns the entities of the section `ENTITIES`.
-///
-/// # Errors
-/// The file has no such section, or a polyline does not end.
-pub fn entities<'a>(groups: &'a Groups<'a>) -> Result<Vec<Entity<'a>>, CaseError> {
-    let named = |pair: &[Group]| (pair[0].code, pair[0].value, pair[1].value) == (0, "SECTION", "ENTITIES");
-    let Some(start) = groups.all.windows(2).position(named) else {
-        return groups
-            .syntax(1, "no section ENTITIES, which holds the lines; save the drawing as ASCII DXF".to_string());
-    };
-    let body = &groups.all[start + 2..];
-    let end = body.iter().position(|group| group.code == 0 && group.value == "ENDSEC").unwrap_or(body.len());
-    let mut entities: Vec<Entity> = Vec::new();
-    for record in body[..end].chunk_by(|_, next| next.code != 0) {
-        let (kind, line) = (record[0].value, record[0].line);
-        match (kind, entities.last_mut().filter(|last| last.kind == "POLYLINE" && !last.ended)) {
-            ("VERTEX", Some(polyline)) => polyline.vertices.push(record),
-            ("SEQEND", Some(polyline)) => polyline.ended = true,
-            (_, Some(polyline)) => return groups.syntax(polyline.line, UNENDED.to_string()),
-            _ => {
-                let layer = find(record, 8).map_or("0", |group| group.value);
-                entities.push(Entity { kind, layer, line, groups: record, vertices: Vec::new(), ended: false });
-            }
-        }
-    }
-    match entities.last().filter(|last| last.kind == "POLYLINE" && !last.ended) {
-        Some(polyline) => groups.syntax(polyline.line, UNENDED.to_string()),
-        None => Ok(entities),
-    }
+/// Content of an entity.
+#[derive(Debug)]
+pub enum Content {
+    /// A line, perhaps closed.
+    Line(Shape),
+    /// Words, signs and pictures, which are no geometry of the section.
+    Remark,
+    /// A type that is not read.
+    Other,
 }
 
-const UNENDED: &str = "POLYLINE without SEQEND after its vertices; the file is damaged, save it again";
+/// Types that explain a drawing and have no geometry of the section.
+const REMARKS: [&str; 31] = [
+    "ACAD_PROXY_ENTITY",
+    "ACAD_TABLE",
+    "ARC_DIMENSION",
+    "ATTDEF",
+    "ATTRIB",
+    "DIMENSION",
+    "GEOPOSITIONMARKER",
+    "HATCH",
+    "IMAGE",
+    "LARGE_RADIAL_DIMENSION",
+    "LEADER",
+    "LIGHT",
+    "MPOLYGON",
+    "MTEXT",
+    "MULTILEADER",
+    "OLE2FRAME",
+    "OLEFRAME",
+    "PDFUNDERLAY",
+    "DGNUNDERLAY",
+    "DWFUNDERLAY",
+    "POINT",
+    "RTEXT",
+    "SECTION",
+    "SHAPE",
+    "SOLID",
+    "SUN",
+    "TEXT",
+    "TOLERANCE",
+    "TRACE",
+    "VIEWPORT",
+    "WIPEOUT",
+];
 
-impl Entity<'_> {
-    /// Returns the points, or none if the entity is of a type that is not read.
-    ///
-    /// # Errors
-    /// The entity is an arc or mirrored, or a coordinate is missing or no number.
-    pub fn shape(&self, groups: &Groups) -> Result<Option<Shape>, CaseError> {
-        let flags = whole(groups, self.groups, 70)?;
-        let in_paper_space = whole(groups, self.groups, 67)? == 1;
-        let mut shape = Shape { closed: flags & 1 != 0, ..Shape::default() };
-        match self.kind {
-            _ if in_paper_space => return Ok(None),
-            "LINE" => {
-                shape.closed = false;
-                shape.push(groups, self, self.groups, [10, 20, 30])?;
-                shape.push(groups, self, self.groups, [11, 21, 31])?;
-            }
-            "LWPOLYLINE" => {
-                let first = self.groups.iter().position(|group| group.code == 10).unwrap_or(self.groups.len());
-                for vertex in self.groups[first..].chunk_by(|_, next| next.code != 10) {
-                    shape.push(groups, self, vertex, [10, 20, 30])?;
-                }
-                if let Some(height) = find(self.groups, ELEVATION) {
-                    shape.high = shape.points.len() * usize::from(number(groups, height)? != 0.0);
-                }
-            }
-            "POLYLINE" if flags & (MESH | FACES) == 0 => {
-                if flags & (CURVE | SPLINE) != 0 {
-                    let message =
-                        "POLYLINE fitted with a curve, only straight lines are read; explode it or straighten it";
-                    return groups.syntax(self.line, message.to_string());
-                }
-                for vertex in &self.vertices {
-                    shape.push(groups, self, vertex, [10, 20, 30])?;
-                }
-            }
-            _ => return Ok(None),
-        }
-        self.must_face_up(groups)?;
-        Ok(Some(shape))
-    }
-
-    /// Refuses an entity whose extrusion direction is not the z axis, as its x and y would not be those of the drawing.
-    fn must_face_up(&self, groups: &Groups) -> Result<(), CaseError> {
-        match find(self.groups, 230) {
-            Some(group) if number(groups, group)? != 1.0 => {
-                let message = format!("{} is not in the x-y plane (extrusion {})", self.kind, group.value);
-                groups.syntax(group.line, message + "; draw it seen from above")
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Code of the height of all points of a LWPOLYLINE.
-const ELEVATION: i32 = 38;
-/// Flags of a POLYLINE.
-const CURVE: i64 = 2;
-const SPLINE: i64 = 4;
+/// Flags of a POLYLINE and of its vertices.
+const POLYLINE_3D: i64 = 8;
 const MESH: i64 = 16;
 const FACES: i64 = 64;
+const CONTROL_POINT: i64 = 16;
+/// Codes of coordinates: of points and starts, of ends.
+const POINT: [i32; 3] = [10, 20, 30];
+const END: [i32; 3] = [11, 21, 31];
+/// Code of the height of all points of an LWPOLYLINE, and of bulges.
+const ELEVATION: i32 = 38;
+const BULGE: i32 = 42;
+/// Greatest slope of an extrusion direction that still counts as upright.
+const UPRIGHT: f64 = 1e-6;
+/// Greatest degree of a spline.
+const DEGREE_MAX: usize = 25;
 
-impl Shape {
-    /// Adds the point of `record` under three codes.
-    fn push(
-        &mut self,
-        groups: &Groups,
-        entity: &Entity,
-        record: &[Group],
-        [x, y, z]: [i32; 3],
-    ) -> Result<(), CaseError> {
-        let coordinate = |code| match find(record, code) {
-            Some(group) => number(groups, group),
-            None => {
-                let line = record.first().map_or(entity.line, |group| group.line);
-                groups.syntax(
-                    line,
-                    format!("{} has no coordinate {code}; the file is damaged, save it again", entity.kind),
-                )
+/// A reader of the points of one entity.
+pub struct Tracer<'a> {
+    /// The file.
+    pub groups: &'a Groups<'a>,
+    /// From the coordinates that the entity has to the section.
+    pub map: Affine,
+    /// Distance (m) within which curves become polylines.
+    pub tolerance: f64,
+}
+
+impl Tracer<'_> {
+    /// Returns the content of an entity.
+    ///
+    /// # Errors
+    /// A coordinate is missing or no number, a curve is flat or out of the plane, or needs too many chords.
+    pub fn content(&self, record: &Record) -> Result<Content, CaseError> {
+        let groups = self.groups;
+        let flags = record.whole(groups, 70)?;
+        let mut shape = Shape { closed: flags & 1 != 0, ..Shape::default() };
+        match record.kind {
+            "LINE" => {
+                shape.closed = false;
+                for codes in [POINT, END] {
+                    let point = self.coordinates(record, record.groups, codes, &mut shape)?;
+                    shape.push(self.map.point(point), line_of(record, record.groups, codes[0]));
+                }
             }
-        };
-        self.points.push([coordinate(x)?, coordinate(y)?]);
-        self.lines.push(find(record, x).map_or(entity.line, |group| group.line));
-        if let Some(bulge) = find(record, 42).filter(|_| entity.kind != "LINE")
-            && number(groups, bulge)? != 0.0
-        {
-            let message = format!("{} has an arc (bulge {}), only straight lines are read", entity.kind, bulge.value);
-            return groups.syntax(bulge.line, message + "; replace arcs by short lines");
+            "LWPOLYLINE" => self.light_polyline(record, &mut shape)?,
+            "POLYLINE" if flags & (MESH | FACES) == 0 => self.polyline(record, flags, &mut shape)?,
+            "ARC" | "CIRCLE" => {
+                let centre = self.coordinates(record, record.groups, POINT, &mut shape)?;
+                let radius = self.positive(record, 40)?;
+                let span = match record.kind {
+                    "ARC" => [record.number(groups, 50)?, record.number(groups, 51)?],
+                    _ => [0.0, 360.0],
+                };
+                let arc = Arc::circular(centre, radius, span);
+                self.arc(record, &arc, &self.facing(record)?, &mut shape)?;
+            }
+            "ELLIPSE" => self.ellipse(record, &mut shape)?,
+            "SPLINE" => self.spline(record, flags, &mut shape)?,
+            kind if REMARKS.contains(&kind) => return Ok(Content::Remark),
+            _ => return Ok(Content::Other),
         }
-        if let Some(height) = find(record, z) {
-            self.high += usize::from(number(groups, height)? != 0.0);
+        Ok(Content::Line(shape))
+    }
+
+    fn light_polyline(&self, record: &Record, shape: &mut Shape) -> Result<(), CaseError> {
+        let first = record.groups.iter().position(|group| group.code == POINT[0]).unwrap_or(record.groups.len());
+        let vertices: Vec<&[Group]> = record.groups[first..].chunk_by(|_, next| next.code != POINT[0]).collect();
+        self.corners(record, &vertices, &self.facing(record)?, shape)?;
+        if record.number_or(self.groups, ELEVATION, 0.0)? != 0.0 {
+            shape.high = vertices.len();
         }
         Ok(())
     }
+
+    /// Vertices of a frame that has been fitted with a curve are no points of the line.
+    fn polyline(&self, record: &Record, flags: i64, shape: &mut Shape) -> Result<(), CaseError> {
+        let mut vertices = Vec::new();
+        for vertex in &record.vertices {
+            if self.groups.whole(vertex, 70)? & CONTROL_POINT == 0 {
+                vertices.push(*vertex);
+            }
+        }
+        let map = if flags & POLYLINE_3D != 0 { self.map } else { self.facing(record)? };
+        self.corners(record, &vertices, &map, shape)
+    }
+
+    /// Adds vertices and the arcs between them.
+    fn corners(
+        &self,
+        record: &Record,
+        vertices: &[&[Group]],
+        map: &Affine,
+        shape: &mut Shape,
+    ) -> Result<(), CaseError> {
+        let mut corners = Vec::with_capacity(vertices.len());
+        for vertex in vertices {
+            let point = self.coordinates(record, vertex, POINT, shape)?;
+            let bulge = find(vertex, BULGE).map_or(Ok(0.0), |group| self.groups.number(group))?;
+            if !bulge.is_finite() {
+                let message = format!("{} has the bulge {bulge}, must be a finite number; correct it", record.kind);
+                return self.groups.syntax(line_of(record, vertex, BULGE), message);
+            }
+            corners.push((point, bulge, line_of(record, vertex, POINT[0])));
+        }
+        for (k, &(point, bulge, line)) in corners.iter().enumerate() {
+            shape.push(map.point(point), line);
+            let next = corners.get(k + 1).or_else(|| corners.first().filter(|_| shape.closed));
+            if let Some(&(end, ..)) = next.filter(|next| bulge != 0.0 && next.0 != point) {
+                let inner = self.chords(record, Arc::bulging(point, end, bulge).points(map, self.tolerance))?;
+                inner[1..inner.len() - 1].iter().for_each(|&corner| shape.push(corner, line));
+                shape.curves += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn ellipse(&self, record: &Record, shape: &mut Shape) -> Result<(), CaseError> {
+        let centre = self.coordinates(record, record.groups, POINT, shape)?;
+        let u = self.coordinates(record, record.groups, END, &mut Shape::default())?;
+        let ratio = self.positive(record, 40)? * self.side(record)?;
+        let span = [record.number_or(self.groups, 41, 0.0)?, record.number_or(self.groups, 42, std::f64::consts::TAU)?];
+        let turn = (span[1] - span[0]).rem_euclid(std::f64::consts::TAU);
+        let turn = if turn < 1e-9 { std::f64::consts::TAU } else { turn };
+        let arc = Arc { centre, u, v: [-u[1] * ratio, u[0] * ratio], span: [span[0], span[0] + turn] };
+        self.arc(record, &arc, &self.map, shape)
+    }
+
+    fn arc(&self, record: &Record, arc: &Arc, map: &Affine, shape: &mut Shape) -> Result<(), CaseError> {
+        let mut points = self.chords(record, arc.points(map, self.tolerance))?;
+        shape.closed = arc.is_whole();
+        if shape.closed {
+            points.pop();
+        }
+        shape.curves = 1;
+        points.into_iter().for_each(|point| shape.push(point, record.line));
+        Ok(())
+    }
+
+    fn spline(&self, record: &Record, flags: i64, shape: &mut Shape) -> Result<(), CaseError> {
+        let spline = self.spline_of(record, shape)?;
+        let points = self.chords(record, spline.corners(&self.map, self.tolerance))?;
+        shape.curves = 1;
+        points.into_iter().for_each(|point| shape.push(point, record.line));
+        // A closed spline ends where it begins, but for rounding; one that only looks closed stays open.
+        let tolerance = self.tolerance.min(1e-3);
+        let (first, last) = (shape.points[0], shape.points[shape.points.len() - 1]);
+        let meets = libm::hypot(first[0] - last[0], first[1] - last[1]) <= tolerance;
+        shape.closed = flags & 1 != 0 || (meets && shape.points.len() > 3);
+        if shape.closed && meets {
+            shape.points.pop();
+            shape.lines.pop();
+        }
+        Ok(())
+    }
+
+    fn spline_of(&self, record: &Record, shape: &mut Shape) -> Result<Spline, CaseError> {
+        let mut spline =
+            Spline { degree: usize::try_from(record.whole(self.groups, 71)?).unwrap_or(0), ..Spline::default() };
+        let numbers = |code: i32| -> Result<Vec<f64>, CaseError> {
+            record.groups.iter().filter(|group| group.code == code).map(|group| self.groups.number(group)).collect()
+        };
+        (spline.knots, spline.weights) = (numbers(40)?, numbers(41)?);
+        let starts = record.groups.iter().enumerate().filter(|(_, group)| group.code == POINT[0]).map(|(k, _)| k);
+        for start in starts {
+            spline.points.push(self.coordinates(record, &record.groups[start..], POINT, shape)?);
+        }
+        if spline.weights.is_empty() {
+            spline.weights = vec![1.0; spline.points.len()];
+        }
+        let (count, p) = (spline.points.len(), spline.degree);
+        let sorted = spline.knots.windows(2).all(|pair| pair[0] <= pair[1]);
+        let finite = spline.knots.iter().all(|knot| knot.is_finite()) && sorted;
+        let problem = if count == 0 {
+            "has no control points, only points to be fitted; convert it to a polyline".to_string()
+        } else if !(1..=DEGREE_MAX).contains(&p) || count <= p {
+            format!("has {count} control points and the degree {p}, must be more than the degree, 1 to {DEGREE_MAX}")
+        } else if spline.knots.len() != count + p + 1 || !finite || spline.knots[p] >= spline.knots[count] {
+            format!("has {} knots, must be {} in ascending order", spline.knots.len(), count + p + 1)
+        } else if spline.weights.len() != count || !spline.weights.iter().all(|w| *w > 0.0 && w.is_finite()) {
+            format!("has {} weights, must be {count} that are above 0", spline.weights.len())
+        } else {
+            return Ok(spline);
+        };
+        self.groups.syntax(record.line, format!("SPLINE {problem}; save the drawing again"))
+    }
+
+    /// The corners of a curve.
+    fn chords(&self, record: &Record, points: Option<Vec<[f64; 2]>>) -> Result<Vec<[f64; 2]>, CaseError> {
+        points.map_or_else(
+            || {
+                let message = format!(
+                    "{} needs more than {CHORDS_MAX} chords to stay within {} m; correct it or raise \
+                     `domain.curve_tolerance`",
+                    record.kind, self.tolerance
+                );
+                self.groups.syntax(record.line, message)
+            },
+            Ok,
+        )
+    }
+
+    /// Reads x and y, and counts a height.
+    fn coordinates(
+        &self,
+        record: &Record,
+        pairs: &[Group],
+        [x, y, z]: [i32; 3],
+        shape: &mut Shape,
+    ) -> Result<[f64; 2], CaseError> {
+        let coordinate = |code| match find(pairs, code) {
+            Some(group) => self.groups.number(group),
+            None => {
+                let line = pairs.first().map_or(record.line, |group| group.line);
+                let message = format!("{} has no coordinate {code}; the file is damaged, save it again", record.kind);
+                self.groups.syntax(line, message)
+            }
+        };
+        let point = [coordinate(x)?, coordinate(y)?];
+        if let Some(height) = find(pairs, z) {
+            shape.high += usize::from(self.groups.number(height)? != 0.0);
+        }
+        Ok(point)
+    }
+
+    fn positive(&self, record: &Record, code: i32) -> Result<f64, CaseError> {
+        let value = record.number(self.groups, code)?;
+        if value > 0.0 && value.is_finite() {
+            return Ok(value);
+        }
+        let line = record.find(code).map_or(record.line, |group| group.line);
+        self.groups.syntax(line, format!("{} has {value} in group {code}, must be above 0; correct it", record.kind))
+    }
+
+    /// From the plane of the entity to the section: seen from below, its x points to the left.
+    pub fn facing(&self, record: &Record) -> Result<Affine, CaseError> {
+        let side = self.side(record)?;
+        Ok(if side < 0.0 { self.map.after(&Affine::scaling([-1.0, 1.0])) } else { self.map })
+    }
+
+    /// 1 if the entity is drawn as seen from above, -1 from below.
+    fn side(&self, record: &Record) -> Result<f64, CaseError> {
+        let mut normal = [0.0, 0.0, 1.0];
+        for (axis, value) in normal.iter_mut().enumerate() {
+            *value = record.number_or(self.groups, 210 + 10 * axis as i32, *value)?;
+        }
+        if normal[0].abs() <= UPRIGHT && normal[1].abs() <= UPRIGHT && normal[2] != 0.0 {
+            return Ok(normal[2].signum());
+        }
+        let [a, b, c] = normal;
+        let line = [210, 220, 230].iter().find_map(|&code| record.find(code)).map_or(record.line, |group| group.line);
+        let message = format!("{} is not in the x-y plane (extrusion {a}, {b}, {c})", record.kind);
+        self.groups.syntax(line, message + "; draw it seen from above, or turn the drawing into the x-y plane")
+    }
 }
 
-fn find<'a, 'g>(record: &'g [Group<'a>], code: i32) -> Option<&'g Group<'a>> {
-    record.iter().find(|group| group.code == code)
+/// Line of the pair with a code, else of the entity.
+fn line_of(record: &Record, pairs: &[Group], code: i32) -> usize {
+    find(pairs, code).map_or(record.line, |group| group.line)
 }
 
-fn number(groups: &Groups, group: &Group) -> Result<f64, CaseError> {
-    let bad =
-        |_| groups.syntax(group.line, format!("{:?} of group {} is no number; correct it", group.value, group.code));
-    group.value.parse().or_else(bad)
-}
-
-/// Returns a whole number, 0 if it is not given.
-fn whole(groups: &Groups, record: &[Group], code: i32) -> Result<i64, CaseError> {
-    let Some(group) = find(record, code) else { return Ok(0) };
-    let bad =
-        |_| groups.syntax(group.line, format!("{:?} of group {code} is no whole number; correct it", group.value));
-    group.value.parse().or_else(bad)
+impl Shape {
+    fn push(&mut self, point: [f64; 2], line: usize) {
+        self.points.push(point);
+        self.lines.push(line);
+    }
 }

@@ -16,7 +16,8 @@ pub struct Group<'a> {
 
 /// All pairs of a file.
 pub struct Groups<'a> {
-    file: &'a str,
+    /// The file as the user named it.
+    pub file: &'a str,
     /// The pairs in order.
     pub all: Vec<Group<'a>>,
 }
@@ -25,12 +26,9 @@ impl<'a> Groups<'a> {
     /// Splits a file into pairs, up to `EOF`.
     ///
     /// # Errors
-    /// The file is binary, a code is no whole number, or the last pair has no value.
+    /// A code is no whole number, or the last pair has no value.
     pub fn parse(file: &'a str, text: &'a str) -> Result<Self, CaseError> {
         let mut groups = Self { file, all: Vec::new() };
-        if text.starts_with("AutoCAD Binary DXF") {
-            return groups.syntax(1, "binary DXF, which is not read; save the drawing as ASCII DXF".to_string());
-        }
         let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
         while let Some((line, code)) = lines.next() {
             let Ok(code) = code.parse() else {
@@ -66,5 +64,34 @@ impl<'a> Groups<'a> {
     /// Always.
     pub fn fail<T>(&self, line: usize, key: &Key, message: String) -> Result<T, CaseError> {
         Err(CaseError::at(self.file, line, key.as_str(), message))
+    }
+
+    /// Returns the error that an entity lacks a pair.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn missing<T>(&self, line: usize, kind: &str, code: i32) -> Result<T, CaseError> {
+        self.syntax(line, format!("{kind} has no group {code}; the file is damaged, save it again"))
+    }
+
+    /// Returns the number that a pair has.
+    ///
+    /// # Errors
+    /// It is no number.
+    pub fn number(&self, group: &Group) -> Result<f64, CaseError> {
+        let bad =
+            |_| self.syntax(group.line, format!("{:?} of group {} is no number; correct it", group.value, group.code));
+        group.value.parse().or_else(bad)
+    }
+
+    /// Returns the whole number under a code, 0 if it is not given.
+    ///
+    /// # Errors
+    /// It is no whole number.
+    pub fn whole(&self, record: &[Group], code: i32) -> Result<i64, CaseError> {
+        let Some(group) = record.iter().find(|group| group.code == code) else { return Ok(0) };
+        let bad =
+            |_| self.syntax(group.line, format!("{:?} of group {code} is no whole number; correct it", group.value));
+        group.value.parse().or_else(bad)
     }
 }

@@ -1,21 +1,38 @@
-//! ASCII DXF: `LINE`, `LWPOLYLINE` and `POLYLINE` entities are joint traces; their layer is the joint law if one has
-//! this name. Closed polylines on the layers `OUTLINE`, `HOLE` and `ISLAND` are loops. Arcs are errors, other entities
-//! are counted in warnings. Coordinates are metres.
+//! ASCII DXF: lines, polylines, arcs, ellipses and splines of a drawing, also those of inserted blocks. Their layer
+//! says what they are: by `layers` of the case, or else loops on `outline`, `hole` and `island`, and joints on all
+//! others, whose law is the one with the name of the layer. Words and signs are counted in notes; other types are
+//! errors unless their layer is ignored.
+//!
+//! The crates that read DXF do not keep the line of an entity, which every message here has.
 
+mod chain;
+mod curve;
 mod entity;
 mod groups;
+mod inserts;
+mod layers;
+mod records;
+mod survey;
+mod units;
 
 use std::collections::BTreeMap;
 
-use self::entity::{Entity, Shape};
+use self::chain::{Dangling, Piece};
+use self::entity::{Content, Shape, Tracer};
 use self::groups::Groups;
-use super::{Geometry, Trace};
+use self::inserts::{Inserter, Placed};
+use self::layers::{Layers, Target};
+use super::affine::Affine;
+use super::{Fault, Geometry, Trace};
 use crate::case_error::CaseError;
 use enmm::model::Case;
 use enmm::model::case::key::Key;
+use enmm::model::case::{CURVE_TOLERANCE, PointList, Transform};
 
-/// Layers of loops, in any letter case.
-const LOOP_LAYERS: [&str; 3] = ["OUTLINE", "HOLE", "ISLAND"];
+pub use self::survey::{LayerSurvey, Survey, survey};
+
+/// Names of the loops, which are also their layers where a case names none, in any letter case.
+const LOOPS: [&str; 3] = ["outline", "hole", "island"];
 
 /// Name of entities in keys.
 const ENTITY: &str = "entity";
@@ -24,75 +41,181 @@ const ENTITY: &str = "entity";
 ///
 /// # Errors
 /// The first thing that cannot be used.
-pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, CaseError> {
+pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, Fault> {
     let groups = Groups::parse(file, text)?;
-    let mut reader = Reader { groups: &groups, case, geometry: Geometry::default(), unused: BTreeMap::new() };
-    reader.units();
-    for (i, entity) in entity::entities(&groups)?.into_iter().enumerate() {
-        reader.entity(&Key::root().field(ENTITY).index(i), &entity)?;
+    let blocks = records::blocks(&groups)?;
+    let entities = records::entities(&groups)?;
+    let sheet = sheet(&groups, &blocks, &entities, case.transform.as_ref())?;
+    let layers = Layers::new(case, &sheet.placed)?;
+    let tolerance = case.domain.curve_tolerance.unwrap_or(CURVE_TOLERANCE * case.mesh.size);
+    let mut reader = Reader {
+        groups: &groups,
+        layers,
+        tolerance,
+        geometry: Geometry { notes: sheet.notes, ..Geometry::default() },
+        notes: BTreeMap::new(),
+        lawless: BTreeMap::new(),
+        closed: BTreeMap::new(),
+        open: [const { Vec::new() }; 3],
+        snap_tolerance: case.domain.snap_tolerance,
+        curves: 0,
+    };
+    for (i, placed) in sheet.placed.iter().enumerate() {
+        reader.entity(&Key::root().field(ENTITY).index(i), placed)?;
+    }
+    reader.join()?;
+    if reader.geometry.outline.is_none() && case.domain.outline.is_empty() {
+        return Err(reader.layers.no_outline(&reader.closed));
     }
     Ok(reader.finish())
 }
 
-/// Reader with the entities found so far.
+/// All entities of model space at their places.
+struct Sheet<'a> {
+    placed: Vec<Placed<'a>>,
+    notes: Vec<String>,
+}
+
+fn sheet<'a>(
+    groups: &'a Groups<'a>,
+    blocks: &'a records::Blocks<'a>,
+    entities: &'a [records::Record<'a>],
+    transform: Option<&Transform>,
+) -> Result<Sheet<'a>, CaseError> {
+    let (unit, note) = units::metres(groups, transform.and_then(|transform| transform.scale))?;
+    let mut inserter = Inserter::new(groups, blocks);
+    inserter.place(entities, &Affine::of_case(transform, unit), None)?;
+    let paper = inserter.paper;
+    let paper = (paper > 0).then(|| format!("{paper} entities on paper space are not used"));
+    Ok(Sheet { placed: inserter.finish(), notes: note.into_iter().chain(paper).collect() })
+}
+
+/// Reader with what was found so far.
 struct Reader<'a> {
     groups: &'a Groups<'a>,
-    case: &'a Case,
+    layers: Layers<'a>,
+    tolerance: f64,
     geometry: Geometry,
-    unused: BTreeMap<String, usize>,
+    /// Things that were not used or changed, with counts.
+    notes: BTreeMap<String, usize>,
+    /// Traces without a law of their own, by what to say of them.
+    lawless: BTreeMap<String, usize>,
+    /// Closed lines by their layers.
+    closed: BTreeMap<String, usize>,
+    /// Open lines of each kind of loop.
+    open: [Vec<Piece>; 3],
+    snap_tolerance: Option<f64>,
+    curves: usize,
 }
 
 impl Reader<'_> {
-    /// Warns if the drawing says that its units are not metres (code 6; 0 is none).
-    fn units(&mut self) {
-        let header = self.groups.all.iter().skip_while(|group| group.value != "$INSUNITS");
-        if let Some(unit) =
-            header.skip(1).find(|group| group.code == 70).filter(|group| !["0", "6"].contains(&group.value))
-        {
-            let warning = format!("$INSUNITS is {}, not 6 (metres); coordinates are taken as metres", unit.value);
-            self.geometry.warnings.push(warning);
+    fn entity(&mut self, key: &Key, placed: &Placed) -> Result<(), Fault> {
+        let (record, layer) = (placed.record, placed.layer);
+        let target = self.layers.target(layer)?;
+        if matches!(target, Target::Ignore) {
+            self.geometry.lines.push(ENTITY, record.line, &[]);
+            self.note(format!("{} on layer {layer:?}, which is ignored", record.kind), 1);
+            return Ok(());
         }
-    }
-
-    fn entity(&mut self, key: &Key, entity: &Entity) -> Result<(), CaseError> {
-        let shape = match entity.shape(self.groups)? {
-            Some(shape) => {
-                self.geometry.lines.push(ENTITY, entity.line, &shape.lines);
-                shape
-            }
-            None => {
-                self.geometry.lines.push(ENTITY, entity.line, &[]);
-                *self.unused.entry(format!("{} entities not used", entity.kind)).or_default() += 1;
+        let tracer = Tracer { groups: self.groups, map: placed.map, tolerance: self.tolerance };
+        let shape = match tracer.content(record)? {
+            Content::Line(shape) => shape,
+            Content::Remark => {
+                self.geometry.lines.push(ENTITY, record.line, &[]);
+                self.note(format!("{} on layer {layer:?} not used: no line", record.kind), 1);
                 return Ok(());
             }
+            Content::Other => {
+                let message = format!(
+                    "{} on layer {layer:?} is of a type that is not read; explode it, or write `[layers.{layer:?}]` \
+                     with `use = \"ignore\"`",
+                    record.kind
+                );
+                return Ok(self.groups.fail(record.line, key, message)?);
+            }
         };
-        if shape.high > 0 {
-            *self.unused.entry("points whose height is not used".to_string()).or_default() += shape.high;
+        self.geometry.lines.push(ENTITY, record.line, &shape.lines);
+        self.note("points whose height is not used".to_string(), shape.high);
+        self.curves += shape.curves;
+        if shape.closed {
+            *self.closed.entry(layer.to_string()).or_default() += 1;
         }
-        match LOOP_LAYERS.iter().position(|layer| entity.layer.eq_ignore_ascii_case(layer)) {
-            Some(layer) => self.ring(layer, key, entity, shape),
-            None => {
-                self.trace(key, entity, shape);
+        match target {
+            Target::Loop(which) => Ok(self.ring(which, key, placed, shape)?),
+            Target::Joint { law, is_known } => {
+                if !is_known {
+                    let warning = format!("traces on layer {layer:?}, which is no joint law, take the default law");
+                    *self.lawless.entry(warning).or_default() += 1;
+                }
+                self.trace(key, shape, law);
                 Ok(())
             }
+            Target::Water => Ok(self.water(key, placed, shape)?),
+            Target::Bolt(name) => Ok(self.bolt(key, placed, &shape, name)?),
+            Target::Ignore => Ok(()),
         }
     }
 
-    fn ring(&mut self, layer: usize, key: &Key, entity: &Entity, mut shape: Shape) -> Result<(), CaseError> {
+    fn note(&mut self, text: String, count: usize) {
+        if count > 0 {
+            *self.notes.entry(text).or_default() += count;
+        }
+    }
+
+    fn ring(&mut self, which: usize, key: &Key, placed: &Placed, mut shape: Shape) -> Result<(), CaseError> {
+        let (kind, line) = (placed.record.kind, placed.record.line);
         let meets = shape.points.len() > 1 && shape.points.first() == shape.points.last();
         if !shape.closed && !meets {
-            let message =
-                format!("{} on layer {:?} is open, a loop must be closed; close it", entity.kind, entity.layer);
-            return self.groups.fail(entity.line, key, message);
+            let kind = format!("{kind} on layer {:?}", placed.layer);
+            self.open[which].push(Piece { points: shape.points, key: key.to_string(), line, kind });
+            return Ok(());
         }
         if meets {
             shape.points.pop();
         }
-        let located = (shape.points, key.to_string());
-        match layer {
+        self.put_ring(which, key.as_str(), line, shape.points)
+    }
+
+    /// Joins the open lines of each kind of loop.
+    fn join(&mut self) -> Result<(), CaseError> {
+        for which in 0..LOOPS.len() {
+            let pieces = std::mem::take(&mut self.open[which]);
+            let Some(Piece { key, line, kind, .. }) = pieces.get(chain::PIECES_MAX) else {
+                self.join_pieces(which, pieces)?;
+                continue;
+            };
+            let message = format!("{kind} is open, as {} lines before it; join them", chain::PIECES_MAX);
+            return Err(CaseError::at(self.groups.file, *line, key, message));
+        }
+        Ok(())
+    }
+
+    fn join_pieces(&mut self, which: usize, pieces: Vec<Piece>) -> Result<(), CaseError> {
+        let points = || pieces.iter().flat_map(|piece| &piece.points);
+        let size = points().flatten().fold(0.0f64, |most, value| most.max(value.abs()));
+        let tolerance = self.snap_tolerance.unwrap_or(1e-6 * size);
+        let loops = chain::loops(pieces, tolerance).map_err(|dangling| {
+            let Dangling { piece, end: [x, y], gap } = *dangling;
+            let gap = gap.map_or(String::new(), |gap| {
+                format!("; its end at ({x:.6}, {y:.6}) is {gap:.3e} m from the next line of this use")
+            });
+            let message = format!("{} is open, a loop must be closed; close it{gap}", piece.kind);
+            CaseError::at(self.groups.file, piece.line, &piece.key, message)
+        })?;
+        for (points, first) in loops {
+            self.note("loops joined of open lines that meet".to_string(), 1);
+            self.put_ring(which, &first.key, first.line, points)?;
+        }
+        Ok(())
+    }
+
+    fn put_ring(&mut self, which: usize, key: &str, line: usize, points: PointList) -> Result<(), CaseError> {
+        let located = (points, key.to_string());
+        match which {
             0 if self.geometry.outline.is_some() => {
-                let message = format!("is a second outline, there can be 1; move it to layer {:?}", LOOP_LAYERS[2]);
-                return self.groups.fail(entity.line, key, message);
+                let remedy = self.layers.remedy_of_second_outline();
+                let message = format!("is a second outline, there can be 1; {remedy}");
+                return Err(CaseError::at(self.groups.file, line, key, message));
             }
             0 => self.geometry.outline = Some(located),
             1 => self.geometry.holes.push(located),
@@ -101,21 +224,55 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn trace(&mut self, key: &Key, entity: &Entity, mut shape: Shape) {
+    fn trace(&mut self, key: &Key, mut shape: Shape, law: Option<String>) {
         if let Some(first) = shape.points.first().copied().filter(|_| shape.closed) {
             shape.points.push(first);
         }
-        let law = self.case.joint_laws.get_key_value(entity.layer).map(|(name, _)| (name.clone(), key.to_string()));
-        if law.is_none() {
-            let what = format!("traces on layer {:?}, which is no joint law, take the default law", entity.layer);
-            *self.unused.entry(what).or_default() += 1;
-        }
+        let law = law.map(|name| (name, key.to_string()));
         self.geometry.traces.push(Trace { points: (shape.points, key.to_string()), law });
     }
 
+    fn water(&mut self, key: &Key, placed: &Placed, mut shape: Shape) -> Result<(), CaseError> {
+        let (kind, line) = (placed.record.kind, placed.record.line);
+        if shape.closed {
+            let message = format!("{kind} on layer {:?} is closed, a water table is a line; open it", placed.layer);
+            return self.groups.fail(line, key, message);
+        }
+        if self.geometry.water.is_some() {
+            let message = "is a second water table, there can be 1; join both lines or move this one to another layer";
+            return self.groups.fail(line, key, message.to_string());
+        }
+        if shape.points.first().map(|p| p[0]) > shape.points.last().map(|p| p[0]) {
+            shape.points.reverse();
+        }
+        self.geometry.water = Some((shape.points, key.to_string()));
+        Ok(())
+    }
+
+    fn bolt(&mut self, key: &Key, placed: &Placed, shape: &Shape, name: &str) -> Result<(), CaseError> {
+        let [head, end] = shape.points[..] else {
+            let message = format!(
+                "{} on layer {:?} has {} points, a bolt has 2; draw it as one line",
+                placed.record.kind,
+                placed.layer,
+                shape.points.len()
+            );
+            return self.groups.fail(placed.record.line, key, message);
+        };
+        self.geometry.bolts.entry(name.to_string()).or_default().push(([head, end], key.to_string()));
+        Ok(())
+    }
+
     fn finish(self) -> Geometry {
-        let Self { mut geometry, unused, .. } = self;
-        geometry.warnings.extend(unused.iter().map(|(what, count)| format!("{count} {what}")));
+        let Self { mut geometry, notes, lawless, curves, tolerance, .. } = self;
+        if curves > 0 {
+            let note = format!(
+                "{curves} arcs and splines are polylines within {tolerance} m of them (`domain.curve_tolerance`)"
+            );
+            geometry.notes.push(note);
+        }
+        geometry.notes.extend(notes.iter().map(|(text, count)| format!("{count} {text}")));
+        geometry.warnings.extend(lawless.iter().map(|(text, count)| format!("{count} {text}")));
         geometry
     }
 }

@@ -1,0 +1,76 @@
+//! Checks of the keys that say how a drawing becomes a section.
+
+use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional};
+use crate::key::{Key, list};
+use crate::{Case, Layer, LayerUse};
+
+impl Case {
+    /// Checks `layers`, `transform` and `domain.curve_tolerance`; readers of drawings do so before they open one.
+    ///
+    /// # Errors
+    /// The first value that cannot be used.
+    pub fn validate_drawing(&self) -> Check {
+        let root = Key::root();
+        let domain = root.field("domain");
+        let tolerance = Range::from(1e-6).to(1e3);
+        optional(&domain, "curve_tolerance", self.domain.curve_tolerance, tolerance, "m", "0.02 mesh sizes is usual")?;
+        let mut seen: Vec<String> = Vec::new();
+        for (name, layer) in &self.layers {
+            let key = root.field("layers").field(name);
+            if seen.contains(&name.to_lowercase()) {
+                return fail(&key, format!("layer {name:?} is there in other letters too; remove one"));
+            }
+            seen.push(name.to_lowercase());
+            self.validate_layer(&key, layer)?;
+        }
+        let Some(transform) = &self.transform else { return Ok(()) };
+        let key = root.field("transform");
+        let hint = "metres in a unit of the drawing: 0.001 for mm";
+        optional(&key, "scale", transform.scale, Range::from(1e-6).to(1e6), "", hint)?;
+        let shift = Range::within(COORDINATE_MAX);
+        transform.shift.iter().enumerate().try_for_each(|(axis, &value)| {
+            number(&key.field("shift").index(axis), "", value, shift, "m", "what moves the drawing to its place")
+        })
+    }
+
+    fn validate_layer(&self, key: &Key, layer: &Layer) -> Check {
+        match (&layer.law, layer.role) {
+            (Some(law), LayerUse::Joint) => Names::of_laws(self).must_hold(&key.field("law"), law)?,
+            (Some(_), _) => {
+                return fail(&key.field("law"), "has no effect on a layer without joints; write `use = \"joint\"`");
+            }
+            (None, _) => {}
+        }
+        let open = || self.bolts.iter().filter(|bolt| bolt.has_no_points()).filter_map(|bolt| bolt.name.as_deref());
+        match (&layer.bolt, layer.role) {
+            (Some(name), LayerUse::Bolt) if open().any(|other| other == name) => Ok(()),
+            (Some(name), LayerUse::Bolt) => {
+                let message = format!(
+                    "no `[[bolt]]` without `points` is named {name:?}, there are: {}; add one with `name = {name:?}`, \
+                     or remove its `points`",
+                    list(open())
+                );
+                fail(&key.field("bolt"), message)
+            }
+            (None, LayerUse::Bolt) => {
+                let message = "a layer of bolts needs `bolt`, the name of a `[[bolt]]` without `points`; add it";
+                fail(&key.field("bolt"), message)
+            }
+            (Some(_), _) => fail(&key.field("bolt"), "has no effect on a layer without bolts; write `use = \"bolt\"`"),
+            (None, _) => Ok(()),
+        }
+    }
+
+    /// Refuses keys of a drawing that nothing has read.
+    pub(crate) fn validate_drawing_is_used(&self) -> Check {
+        let root = Key::root();
+        let keys = [
+            (root.field("layers"), !self.layers.is_empty()),
+            (root.field("transform"), self.transform.is_some()),
+            (root.field("domain").field("curve_tolerance"), self.domain.curve_tolerance.is_some()),
+        ];
+        keys.iter().find(|(_, given)| *given).map_or(Ok(()), |(key, _)| {
+            fail(key, "has no effect without a drawing; add `domain.geometry_file` or remove it")
+        })
+    }
+}

@@ -1,0 +1,84 @@
+//! `enmm edit`: shows the model of a case while the case is written, and builds it again at each save.
+
+mod build;
+mod shown;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, SystemTime};
+
+use clap::Args;
+use enmm_report::{Server, Source};
+
+use self::build::{BoundDesk, build};
+use self::shown::Shown;
+use crate::case::CaseArguments;
+use crate::{BAD_INPUT, FAILED, fail, print_line};
+
+/// Pause between two looks at the files of the case.
+const PAUSE: Duration = Duration::from_millis(40);
+
+/// Arguments of `enmm edit`.
+#[derive(Args)]
+#[command(after_help = "Example: enmm edit slope.toml --port 8080")]
+pub struct Arguments {
+    #[command(flatten)]
+    case: CaseArguments,
+    /// Port; 0 takes one that is free.
+    #[arg(long, default_value_t = 0)]
+    port: u16,
+}
+
+/// Serves the page of a case to browsers on this machine, until it is interrupted. Nothing is written beside the case.
+pub fn edit(arguments: Arguments) -> ExitCode {
+    let Arguments { case, port } = arguments;
+    if !case.path.is_file() {
+        let place = case.path.display();
+        return fail(&format!("{place} is no file: name a case file, as `enmm new slope` writes it"), BAD_INPUT);
+    }
+    let shown = Arc::new(Shown::new(&case.path));
+    let server = match Server::of(Arc::clone(&shown) as Arc<dyn Source>, port) {
+        Ok(server) => server,
+        Err(error) => return fail(&format!("cannot listen at port {port} ({error})"), FAILED),
+    };
+    let outcome = server.address().and_then(|address| {
+        print_line(&format!("open http://{address}/ in a browser; Ctrl-C ends this"));
+        thread::Builder::new().name("build".to_owned()).spawn(move || watch(&case, &shown))?;
+        server.run()
+    });
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(&format!("cannot serve any more ({error})"), FAILED),
+    }
+}
+
+/// Builds the model each time that a file of the case has changed, without end.
+fn watch(case: &CaseArguments, shown: &Arc<Shown>) {
+    let bounds = BoundDesk::open(shown);
+    let mut files = vec![case.path.clone()];
+    let mut seen = Vec::new();
+    loop {
+        let stamps = stamps(&files);
+        if stamps != seen {
+            // A file that changes during the build is seen again, since its stamp was taken before.
+            if let Some(inputs) = build(case, shown, &bounds) {
+                seen = if inputs == files { stamps } else { Vec::new() };
+                files = inputs;
+            } else {
+                seen = stamps;
+            }
+        }
+        thread::sleep(PAUSE);
+    }
+}
+
+/// Time of the last change and length of each file, none of one that is not there.
+fn stamps(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
+    let stamp = |file: &PathBuf| {
+        let found = file.metadata().ok()?;
+        Some((found.modified().ok()?, found.len()))
+    };
+    files.iter().map(stamp).collect()
+}

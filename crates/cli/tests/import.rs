@@ -1,0 +1,74 @@
+//! `enmm import` writes a case for a drawing that `enmm check` accepts once nothing is open, and names all that is.
+
+use std::fs;
+
+use crate::support::Place;
+
+fn place() -> Place {
+    let place = Place::with("");
+    let drawing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/keys/section.dxf");
+    fs::copy(drawing, place.path("section.dxf")).expect("a drawing");
+    place
+}
+
+#[test]
+fn one_command_makes_the_section_of_a_drawing() {
+    let place = place();
+    let answer = place.enmm(&["import", "section.dxf", "--examples"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    for part in [
+        "note: $INSUNITS is 4 (millimetres): coordinates are taken times 0.001",
+        "TERRAIN  outline   1 LWPOLYLINE",
+        "FAULTS   joint     2 ARC, 2 LINE, 1 TEXT",
+        "BEDDING  joint     2 LINE, 1 LWPOLYLINE, 1 SPLINE",
+        "GWL      water     1 LWPOLYLINE",
+        "BOLTS    bolt      2 LINE",
+        "FRAME    ignore    1 3DFACE",
+        "assumed: layer \"TERRAIN\" is \"outline\": its closed line is the largest of the drawing",
+        "assumed: mesh.size is 0.5 m",
+        "assumed: the edge (0, 0) to (40, 0) is held in xy",
+        "example values: [joint_law.faults]: friction_deg",
+        "open: layer \"FRAME\": 3DFACE is of a type that is not read; explode it in the drawing",
+        "section.toml: fill in what is open, then: enmm check section.toml",
+    ] {
+        assert!(answer.stdout.contains(part), "{part:?} is not in {}", answer.stdout);
+    }
+    let checked = place.enmm(&["check", "section.toml", "--json"]);
+    assert_eq!(checked.status, Some(0), "{checked:?}");
+    let found: serde_json::Value = serde_json::from_str(&checked.stdout).expect("JSON");
+    // Six sides, less the triangle of the face: 40 × 20 − (10 + 18)/2 × 16.
+    assert!((found["total_area"].as_f64().expect("an area") - (800.0 - 224.0)).abs() < 1e-6, "{found}");
+    assert!(found["blocks"].as_u64().expect("blocks") > 1, "{found}");
+    assert_eq!(found["ignored_joints"], 0);
+    let again = place.enmm(&["import", "section.dxf"]);
+    again.assert_bad_input(&["cannot write section.toml (it is there already)"]);
+}
+
+#[test]
+fn values_that_no_drawing_has_stay_open() {
+    let place = place();
+    let answer = place.enmm(&["import", "section.dxf", "-o", "open.toml"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    assert!(answer.stdout.contains("open: [rock.rock]: density, young, poisson"), "{answer:?}");
+    let checked = place.enmm(&["check", "open.toml"]);
+    checked.assert_bad_input(&["open.toml:", "is missing"]);
+    // Each open value, filled in, is one error less; then the case is accepted.
+    let mut text = fs::read_to_string(place.path("open.toml")).expect("a case");
+    for (key, value) in
+        [("density", "2650"), ("young", "20e9"), ("poisson", "0.25"), ("friction_deg", "30"), ("area", "5e-4")]
+    {
+        text = text.replace(&format!("# {key} =  # OPEN"), &format!("{key} = {value}  # OPEN"));
+    }
+    fs::write(place.path("open.toml"), text).expect("written");
+    let checked = place.enmm(&["check", "open.toml"]);
+    assert_eq!(checked.status, Some(0), "{checked:?}");
+}
+
+#[test]
+fn a_drawing_that_cannot_be_read_is_named() {
+    let place = place();
+    place.enmm(&["import", "none.dxf"]).assert_bad_input(&["none.dxf: cannot read the file"]);
+    fs::write(place.path("binary.dxf"), b"AutoCAD Binary DXF\r\n\x1a\0\xb9").expect("written");
+    place.enmm(&["import", "binary.dxf"]).assert_bad_input(&["binary.dxf: it is a binary DXF"]);
+    assert_eq!(place.names(), ["binary.dxf", "case.toml", "section.dxf"]);
+}
