@@ -140,6 +140,7 @@ value = 0.5
 
 [ensemble]
 limit = 1.0
+interval = 0.1
 "#;
 
 /// The case in few words, as it is written.
@@ -151,7 +152,9 @@ fn short_as_json() -> Value {
 fn cases_as_json() -> [Value; 2] {
     let own = CASE.replacen("size = 1.0\n", "size = 1.0\nleast_block = 1e-4\n", 1);
     let own = own.replacen("snap_tolerance = 1e-6\n", "snap_tolerance = 1e-6\nextend_ends = 0.01\n", 1);
-    let other = own.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;
+    let own = own.replacen("damping = 0.05\n", "damping = 0.05\nwater = { level = 1.0 }\n", 1);
+    let drained = own.replacen("water = { level = 1.0 }", "water = { table = [[0.0, 1.0], [10.0, 0.5]] }", 1);
+    let other = drained.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;
     [own, other].map(|text| serde_json::to_value(parse_case(&text, "slope.toml", Path::new("")).unwrap().case).unwrap())
 }
 
