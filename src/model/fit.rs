@@ -3,7 +3,7 @@
 
 use std::fmt::Display;
 
-use crate::contact::{BoltState, ContactHistory, NeighbourList};
+use crate::contact::{BoltState, BondHistory, ContactHistory, NeighbourList};
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
 
@@ -133,13 +133,14 @@ impl Simulation {
             plastic: _,
             columns: _,
             contacts,
+            bonds,
             friction_delay,
             neighbours,
             support_force: _,
             support_rest: _,
             fix_active: _,
             removed: _,
-            laws: _,
+            laws,
             law_switch: _,
             bolts: _,
             drive: Drive { from, to, since, until },
@@ -150,6 +151,9 @@ impl Simulation {
         self.check_clock(state)?;
         self.check_motion(state)?;
         self.check_contacts(contacts)?;
+        let is_soft = laws.iter().any(|law| law.softening.is_some());
+        length("bonds", bonds.len(), if is_soft { contacts.len() } else { 0 })?;
+        check_bonds(bonds)?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
@@ -353,6 +357,14 @@ impl Simulation {
     }
 }
 
+fn check_bonds(bonds: &[BondHistory]) -> Fit {
+    for (k, &BondHistory { damage, lengths }) in bonds.iter().enumerate() {
+        between(format_args!("bonds[{k}].damage"), damage, 0.0, 1.0)?;
+        lengths.iter().try_for_each(|&length| between(format_args!("bonds[{k}].lengths"), length, 0.0, LENGTH))?;
+    }
+    Ok(())
+}
+
 /// Checks every energy and work of a ledger.
 ///
 /// # Errors
@@ -364,6 +376,7 @@ pub fn check_ledger(ledger: &Ledger) -> Fit {
         potential,
         stored,
         friction,
+        fracture,
         contact_work,
         support_work,
         damping,
@@ -375,7 +388,8 @@ pub fn check_ledger(ledger: &Ledger) -> Fit {
         external_work,
         baseline,
     } = ledger;
-    let works = [contact_work, support_work, bolt_work, radiation, external_work, damping, yielding, friction];
+    let works =
+        [contact_work, support_work, bolt_work, radiation, external_work, damping, yielding, friction, fracture];
     numbers("ledger: energies", &[kinetic, strain, potential, stored, bolt_stored, bolt_installed, baseline], FORCE)?;
     numbers("ledger: works", &works, FORCE)
 }
@@ -391,6 +405,7 @@ fn check_counters(counters: &Counters) -> Fit {
         deepest_contact,
         crushed,
         crushing,
+        broken,
         penetration_max,
         dt_min,
         dt_max,
@@ -413,6 +428,7 @@ fn check_counters(counters: &Counters) -> Fit {
     }
     number("counters.deepest_contact", deepest_contact, LENGTH)?;
     number("counters.crushing", crushing, FORCE)?;
+    between("counters.broken", broken, 0.0, LENGTH)?;
     number("counters.penetration_max", penetration_max, LENGTH)?;
     number("counters.dt_min", dt_min, TIME)?;
     number("counters.dt_max", dt_max, TIME)

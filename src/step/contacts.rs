@@ -89,6 +89,7 @@ pub fn entrance(
         dt: reach.ahead,
         impacts: has_impacts.then(|| &model.mass_matrix.inverse_total[..]),
         first: state.step == 0,
+        bonds: &state.bonds,
         in_situ: model.in_situ.as_ref(),
         serial: step.serial,
     };

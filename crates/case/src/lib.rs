@@ -330,9 +330,22 @@ pub struct JointLaw {
     /// the rock does not crush.
     #[serde(default)]
     pub crush: Option<f64>,
+    /// Energy of fracture in tension (J/m²): the tensile strength falls with the opening until this much is spent;
+    /// default: it is lost at once. Not with `residual_tension`.
+    #[serde(default)]
+    pub tension_energy: Option<f64>,
+    /// Energy of fracture in shear (J/m²), beyond the heat of residual friction: friction and cohesion fall from their
+    /// peak values to the residual ones with the slip until this much is spent; default: they fall at once.
+    #[serde(default)]
+    pub shear_energy: Option<f64>,
 }
 
 impl JointLaw {
+    /// Whether it loses its peak strength step by step, with an energy of fracture.
+    pub fn softens(&self) -> bool {
+        self.tension_energy.is_some() || self.shear_energy.is_some()
+    }
+
     /// A Mohr–Coulomb joint with friction (degrees) alone.
     pub fn frictional(friction_deg: f64) -> Self {
         Self {
@@ -351,6 +364,8 @@ impl JointLaw {
             jcs: None,
             closure_max: None,
             crush: None,
+            tension_energy: None,
+            shear_energy: None,
         }
     }
 }

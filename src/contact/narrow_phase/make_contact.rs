@@ -6,7 +6,7 @@ use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::frame::right_of;
-use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
+use crate::contact::{BondHistory, Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
@@ -56,6 +56,8 @@ impl NarrowPhase<'_> {
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let Tributary { length, bonded, penalty, share, whole } = self.tributary(node, candidate);
+        let bond = self.bond(candidate.held, [length, bonded]);
+        let [length, bonded] = bond.lengths;
         let law = self.law(node, edge);
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
@@ -88,12 +90,25 @@ impl NarrowPhase<'_> {
             gap,
             length,
             bonded,
-            mean_stress: 0.0,
+            past: bond.damage,
             law,
             torn: false,
             fresh: candidate.held.is_none(),
             delayed: false,
         };
+    }
+
+    /// The bond of a contact that was the one of an index in the last step and now has some lengths (m): a bond that
+    /// holds is as long as it was.
+    #[inline(always)]
+    fn bond(&self, held: Option<u32>, lengths: [f64; 2]) -> BondHistory {
+        let new = BondHistory { damage: 0.0, lengths };
+        if self.bonds.is_empty() {
+            return new;
+        }
+        let holds =
+            |known: u32| self.rule.history[known as usize].intact && self.bonds[known as usize].lengths[0] > 0.0;
+        held.filter(|&known| holds(known)).map_or(new, |known| self.bonds[known as usize])
     }
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch

@@ -14,7 +14,7 @@ mod slips;
 mod stage;
 mod warnings;
 
-use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support};
+use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resistance, Roughness, Softening, Support};
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
@@ -251,6 +251,7 @@ fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
 fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
     let tangent = |degrees: f64| libm::tan(degrees.to_radians());
     let normal_stiffness = law.normal_stiffness.unwrap_or(stiffness);
+    let opening = law.tension_energy.map_or(0.0, |energy| 2.0 * energy / law.tension);
     JointLaw {
         normal_stiffness,
         shear_stiffness: law.shear_stiffness.unwrap_or(stiffness * shear_ratio),
@@ -273,6 +274,7 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
                 jcs: law.jcs.unwrap_or_default(),
             }),
         },
+        softening: law.softens().then(|| Softening { opening, shear_energy: law.shear_energy.unwrap_or_default() }),
     }
 }
 
@@ -413,6 +415,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         displacement: vec![Vector::zeros(); covers],
         velocity,
         contacts: Vec::new(),
+        bonds: Vec::new(),
         neighbours: Default::default(),
         support_force: model.supports.iter().map(|s| s.preload).collect(),
         support_rest: vec![0.0; model.supports.len()],

@@ -262,7 +262,8 @@ fn joint_law(key: &Key, law: &JointLaw) -> Check {
     number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
     optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for 0.05 m")?;
     optional(key, "crush", law.crush, Range::from(1e3).to(1e12), "Pa", "the strength of the rock, 1e6 to 3e8")?;
-    joints::validate_kind(key, law)
+    joints::validate_kind(key, law)?;
+    joints::validate_energies(key, law)
 }
 
 fn gravity(key: &Key, gravity: &Gravity) -> Check {

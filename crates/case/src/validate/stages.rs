@@ -3,7 +3,7 @@
 use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
 use super::joints;
 use crate::key::Key;
-use crate::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
+use crate::{Case, JointLaw, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
 
 /// Checks the stages of a case.
 ///
@@ -59,6 +59,9 @@ fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {
         validate_change(&key, change, laws)?;
         if case.joint_laws.get(&change.law).is_some_and(|law| law.kind == JointLawKind::BartonBandis) {
             joints::validate_rough_change(&key, change)?;
+        }
+        if case.joint_laws.get(&change.law).is_some_and(JointLaw::softens) {
+            joints::validate_soft_change(&key, change)?;
         }
     }
     for (i, LawSwitch { from, to }) in stage.law_switches.iter().enumerate() {
