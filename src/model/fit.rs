@@ -329,11 +329,12 @@ impl Simulation {
 
     fn check_events(&self, events: &Events) -> Fit {
         let (blocks, traces) = (self.state().removed.len(), self.model().trace_law.len());
-        let Events { list, touching, detached, slipped, failed, overlapped, overlap_max } = events;
+        let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max } = events;
         length("events.touching", touching.len(), blocks)?;
         length("events.detached", detached.len(), blocks)?;
         length("events.slipped", slipped.len(), traces + 1)?;
         length("events.failed", failed.len(), blocks)?;
+        length("events.bonded", bonded.len(), if bonded.is_empty() { 0 } else { traces })?;
         between("events.overlap_max", *overlap_max, 0.0, LENGTH)?;
         for (k, pair) in overlapped.iter().enumerate() {
             pair.iter().try_for_each(|b| index(format_args!("events.overlapped[{k}]"), b.number(), blocks))?;
@@ -347,7 +348,9 @@ impl Simulation {
             }
             match kind {
                 EventKind::Slipped if *subject == u32::MAX => Ok(()),
-                EventKind::Slipped => index(format_args!("events.list[{k}].subject"), *subject, traces),
+                EventKind::Slipped | EventKind::Broken => {
+                    index(format_args!("events.list[{k}].subject"), *subject, traces)
+                }
                 EventKind::Detached | EventKind::Failed | EventKind::Overlapped => {
                     index(format_args!("events.list[{k}].subject"), *subject, blocks)
                 }

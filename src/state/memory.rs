@@ -189,6 +189,6 @@ fn inputs(inputs: &Inputs) -> usize {
 }
 
 fn events(events: &Events) -> usize {
-    let Events { list, touching, detached, slipped, failed, overlapped, overlap_max: _ } = events;
-    sum(&[list, touching, detached, slipped, failed, overlapped])
+    let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max: _ } = events;
+    sum(&[list, touching, detached, slipped, failed, bonded, overlapped])
 }

@@ -22,7 +22,7 @@ pub use bolt::{Anchorage, Bolt, BoltPattern};
 pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use in_situ::InSitu;
-pub use joint_set::{AngleDistribution, Cut, Distribution, JointSet, LawRegion, Section, Side};
+pub use joint_set::{AngleDistribution, Bridge, Cut, Distribution, JointSet, LawRegion, Section, Side};
 pub use pictures::{PictureKind, Pictures};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
 pub use validate::Invalid;
@@ -64,6 +64,9 @@ pub struct Case {
     /// Regions whose joints have another law, in order.
     #[serde(default, rename = "law_region", skip_serializing_if = "Vec::is_empty")]
     pub law_regions: Vec<LawRegion>,
+    /// Rock bridges that can break, drawn by hand.
+    #[serde(default, rename = "bridge", skip_serializing_if = "Vec::is_empty")]
+    pub bridges: Vec<Bridge>,
     /// Acceleration of gravity.
     #[serde(default)]
     pub gravity: Gravity,
@@ -170,6 +173,10 @@ pub struct Domain {
     /// trimmed to it; default a tenth of the mesh size, 0 keeps what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extend_ends: Option<f64>,
+    /// Joint law of rock bridges between ends that stop in the rock, nearer than the mesh size to the outline or another
+    /// trace, and that line; default: the rock there is elastic and never breaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bridge_law: Option<String>,
 }
 
 /// Equilateral lattice: node(i, j) = origin + i·a1 + j·a2, a1 = size·(cos, sin)(angle), a2 = a1 turned by +60°.
@@ -332,11 +339,11 @@ pub struct JointLaw {
     pub crush: Option<f64>,
     /// Energy of fracture in tension (J/m²): the tensile strength falls with the opening until this much is spent;
     /// default: it is lost at once. Not with `residual_tension`.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tension_energy: Option<f64>,
     /// Energy of fracture in shear (J/m²), beyond the heat of residual friction: friction and cohesion fall from their
     /// peak values to the residual ones with the slip until this much is spent; default: they fall at once.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_energy: Option<f64>,
 }
 

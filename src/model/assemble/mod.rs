@@ -1,6 +1,7 @@
 //! From the case to the model: arrangement, covers, masses, boundary, fixities, loads.
 
 mod bolts;
+mod bonds;
 mod ends;
 mod geometry;
 mod integrators;
@@ -70,7 +71,8 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     let geometry::Plane { mesh, mut arrangement, joints, ends, crumbs } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
-    let notes = warnings::notes(&noding, &ends, &crumbs);
+    let mut notes = warnings::notes(&noding, &ends, &crumbs);
+    notes.extend(bonds::note(&joints));
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
@@ -87,6 +89,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     warnings.extend(rock::overstressed(case, &model));
     warnings.extend(rock::coarse(case));
     warnings.extend(bolt_warnings);
+    warnings.extend(bonds::warnings(case, &model, &joints));
     warnings.extend(quiet::warning(case));
     warnings.extend(quiet::ringing(case));
     warnings.extend(warnings::of_values(case, &model, &positions));

@@ -2,7 +2,7 @@
 
 use super::checks::{Check, Range, fail, number, optional};
 use crate::key::Key;
-use crate::{JointLaw, JointLawKind, LawChange};
+use crate::{Integrator, JointLaw, JointLawKind, LawChange};
 
 /// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
 const RESIDUAL: Range = Range::from(0.0).to(70.0);
@@ -109,6 +109,20 @@ pub fn validate_energies(key: &Key, law: &JointLaw) -> Check {
         return fail(&key.field("shear_energy"), message);
     }
     Ok(())
+}
+
+/// Checks that the integrator knows what the law has.
+///
+/// # Errors
+/// The implicit one is asked for a law with an energy of fracture.
+pub fn validate_integrator(key: &Key, law: &JointLaw, integrator: Integrator) -> Check {
+    if integrator == Integrator::Explicit || !law.softens() {
+        return Ok(());
+    }
+    let name = if law.tension_energy.is_some() { "tension_energy" } else { "shear_energy" };
+    let message = "the implicit integrator knows no energy of fracture; remove it, or set \
+                   `solver.integrator = \"explicit\"`";
+    fail(&key.field(name), message)
 }
 
 /// Checks that a stage changes no law with an energy of fracture: what is damaged belongs to its strength.

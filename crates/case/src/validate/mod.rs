@@ -49,7 +49,9 @@ impl Case {
         self.validate_joints(&root)?;
         self.validate_rocks(&root.field("rock"))?;
         for (name, law) in &self.joint_laws {
-            joint_law(&root.field("joint_law").field(name), law)?;
+            let key = root.field("joint_law").field(name);
+            joint_law(&key, law)?;
+            joints::validate_integrator(&key, law, self.solver.integrator)?;
         }
         joint_sets::validate_law_regions(&root.field("law_region"), self)?;
         gravity(&root.field("gravity"), &self.gravity)?;
@@ -107,6 +109,15 @@ impl Case {
             joint_sets::validate_set(&key, set)?;
             joint_sets::validate_end(&key, self, i)?;
             self.validate_law_of_joint(&laws, &key, set.law.as_deref())?;
+            joint_sets::validate_bridges(&key, set, &laws)?;
+        }
+        for (i, bridge) in self.bridges.iter().enumerate() {
+            let key = root.field("bridge").index(i);
+            points(&key.field("points"), &bridge.points, 2, "a rock bridge")?;
+            laws.must_hold(&key.field("law"), &bridge.law)?;
+        }
+        if let Some(law) = &self.domain.bridge_law {
+            laws.must_hold(&root.field("domain").field("bridge_law"), law)?;
         }
         if self.domain.islands.is_empty() {
             return Ok(());

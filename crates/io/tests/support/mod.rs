@@ -70,6 +70,8 @@ residual_tension = 0.0
 dilation_deg = 5.0
 dilation_slip = 0.01
 crush = 60e6
+tension_energy = 100.0
+shear_energy = 1e4
 
 [gravity]
 x = 0.0
