@@ -1,4 +1,4 @@
-//! Bonds that soften (theory §24): their damage at the end of a sub-step, and the energy of fracture.
+//! Bonds that soften (theory §7): their damage at the end of a sub-step, and the energy of fracture.
 
 use crate::contact::{BondHistory, ContactHistory, ContactSetting, ContactState, JointLaw, VertexEdge};
 use crate::geometry::Vector;

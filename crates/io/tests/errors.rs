@@ -19,7 +19,7 @@ fn unknown_section_names_the_nearest_known_section() {
     assert_refused(
         "[mesh]",
         "[mehs]",
-        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, cut, \
+        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, bridge, cut, \
          domain, ensemble, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, \
          law_region, load, mesh, monitor, output, port, quiet, random, random_correlation, rock, section, solver, \
          stage, title, water; rename or remove it",
@@ -132,7 +132,7 @@ fn wrong_brackets_of_a_section_say_which_to_write() {
     assert_refused(
         "[rock.granite]",
         "[rock]",
-        "37: rock.density: is the integer 2650, must be a table; write `[rock.NAME]` with `density = 2700.0, young = \
+        "38: rock.density: is the integer 2650, must be a table; write `[rock.NAME]` with `density = 2700.0, young = \
          1e10, poisson = 0.25`",
     );
 }
@@ -162,7 +162,7 @@ fn missing_key_says_what_to_add() {
     assert_refused(
         "pressure = 1e4\n",
         "",
-        "93: load[1]: a load of kind pressure needs `pressure`, which is not given; add `pressure`",
+        "100: load[1]: a load of kind pressure needs `pressure`, which is not given; add `pressure`",
     );
 }
 
@@ -474,7 +474,7 @@ fn at_most_one_rock_is_the_background() {
     assert_refused(
         "region = [[0.0, 0.0], [10.0, 0.0], [10.0, 2.0]]\nblocks = [[9.0, 1.0]]\n",
         "",
-        "41: rock.marl: neither this rock nor rock \"granite\" has `region` or `blocks`, at most 1 rock can be the \
+        "42: rock.marl: neither this rock nor rock \"granite\" has `region` or `blocks`, at most 1 rock can be the \
          background; add `region` or `blocks` to one of them",
     );
 }

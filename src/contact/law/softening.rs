@@ -1,5 +1,5 @@
 //! Bonds that soften: tensile strength and cohesion that fall with opening and slip, with the energy of fracture that
-//! a law gives (theory §24).
+//! a law gives (theory §7).
 
 /// How the peak strength of a joint is lost. A mode without energy is lost at once.
 #[doc(alias = "cohesive zone")]
@@ -77,7 +77,7 @@ impl Bond {
     /// where it opens) without it, of which a unit of force takes `c` (m²/N).
     ///
     /// While the bond softens the force is the mean of those before and after the step, so that its work is the energy
-    /// of fracture at any step (Eq. 90).
+    /// of fracture at any step (Eq. 22b).
     pub fn normal(&self, b: f64, c: f64) -> f64 {
         let pulled = |stiffness: f64| stiffness * b / (1.0 + c * stiffness);
         if b >= 0.0 {
@@ -110,7 +110,7 @@ impl Bond {
         [peak, residual.min(peak)]
     }
 
-    /// Slip (m) at which the shear strength under a normal force (N/m) is residual (Eq. 89); 0 where it is lost at
+    /// Slip (m) at which the shear strength under a normal force (N/m) is residual (Eq. 22c); 0 where it is lost at
     /// once.
     fn slip_at_end(&self, [peak, residual]: [f64; 2]) -> f64 {
         if peak > residual { 2.0 * self.shear_energy / (peak - residual) } else { 0.0 }
@@ -118,7 +118,7 @@ impl Bond {
 
     /// Greatest shear force (N/m) in a step that would have the force `asked` (N/m) without slip, of which a unit takes
     /// `1/ease` of slip (N/m²), and at whose end the opening has led to the damage `opened`: the mean of those before
-    /// and after the step (Eq. 90).
+    /// and after the step (Eq. 22b).
     pub fn shear(&self, normal: f64, asked: f64, ease: f64, opened: f64) -> f64 {
         let strengths = self.strengths(normal);
         let [peak, residual] = strengths;

@@ -1,4 +1,4 @@
-//! Bonds that soften: what the user should know of their lengths and of the mesh that they break in (theory §24).
+//! Bonds that soften: what the user should know of their lengths and of the mesh that they break in (theory §7).
 
 use crate::contact::{JointLaw, LawId};
 use crate::mechanics::Elasticity;
