@@ -78,6 +78,8 @@ pub struct BondHistory {
     /// Tributary length at first sight, and the bonded part of it (m): a bond is as long as it was until it breaks,
     /// however its nodes move against each other.
     pub lengths: [f64; 2],
+    /// Its law: that of the bonded part, where the faces of a contact lie on joints of two laws.
+    pub law: LawId,
 }
 
 /// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on

@@ -153,7 +153,7 @@ impl Simulation {
         self.check_contacts(contacts)?;
         let is_soft = laws.iter().any(|law| law.softening.is_some());
         length("bonds", bonds.len(), if is_soft { contacts.len() } else { 0 })?;
-        check_bonds(bonds)?;
+        check_bonds(bonds, laws.len())?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
@@ -360,9 +360,10 @@ impl Simulation {
     }
 }
 
-fn check_bonds(bonds: &[BondHistory]) -> Fit {
-    for (k, &BondHistory { damage, lengths }) in bonds.iter().enumerate() {
+fn check_bonds(bonds: &[BondHistory], laws: usize) -> Fit {
+    for (k, &BondHistory { damage, lengths, law }) in bonds.iter().enumerate() {
         between(format_args!("bonds[{k}].damage"), damage, 0.0, 1.0)?;
+        index(format_args!("bonds[{k}].law"), law.number(), laws)?;
         lengths.iter().try_for_each(|&length| between(format_args!("bonds[{k}].lengths"), length, 0.0, LENGTH))?;
     }
     Ok(())

@@ -38,7 +38,7 @@ pub fn settle_bonds(
         counters.broken += if history.intact { 0.0 } else { contact.bonded };
         works.fracture += damaged.loss;
         works.friction -= damaged.of_slip;
-        bonds.push(BondHistory { damage: damaged.damage, lengths: [contact.length, contact.bonded] });
+        bonds.push(BondHistory { damage: damaged.damage, lengths: [contact.length, contact.bonded], law: contact.law });
     }
     works
 }

@@ -56,9 +56,11 @@ impl NarrowPhase<'_> {
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let Tributary { length, bonded, penalty, share, whole } = self.tributary(node, candidate);
-        let bond = self.bond(candidate.held, [length, bonded]);
-        let [length, bonded] = bond.lengths;
-        let law = self.law(node, edge);
+        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law: self.law(node, edge) };
+        if self.softens {
+            bond = self.bond(candidate, bond);
+        }
+        let BondHistory { lengths: [length, bonded], law, .. } = bond;
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
@@ -98,17 +100,46 @@ impl NarrowPhase<'_> {
         };
     }
 
-    /// The bond of a contact that was the one of an index in the last step and now has some lengths (m): a bond that
-    /// holds is as long as it was.
-    #[inline(always)]
-    fn bond(&self, held: Option<u32>, lengths: [f64; 2]) -> BondHistory {
-        let new = BondHistory { damage: 0.0, lengths };
-        if self.bonds.is_empty() {
-            return new;
+    /// The bond of a contact that would have a law and lengths (m), tributary and bonded: a bond that holds is as long as
+    /// it was. Of a contact without one the bonded length is what the law gives it.
+    #[cold]
+    #[inline(never)]
+    fn bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
+        let holds = |known: u32| self.rule.history[known as usize].intact;
+        let held = candidate.held.filter(|&known| holds(known)).and_then(|known| self.bonds.get(known as usize));
+        if let Some(bond) = held.filter(|bond| bond.lengths[0] > 0.0) {
+            return *bond;
         }
-        let holds =
-            |known: u32| self.rule.history[known as usize].intact && self.bonds[known as usize].lengths[0] > 0.0;
-        held.filter(|&known| holds(known)).map_or(new, |known| self.bonds[known as usize])
+        if self.first { self.first_bond(candidate, new) } else { new }
+    }
+
+    /// The bond of a contact in the first step: where its faces lie on joints of several laws, the part of its length
+    /// that lies on the bond is bonded.
+    fn first_bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
+        let (boundary, node) = (self.rule.boundary, candidate.node);
+        let along = |point: EdgeId| self.rule.frames.position(point).dot(&candidate.tangent);
+        let before = boundary.node_before[candidate.edge];
+        let [from, to] = [before, boundary.nodes.next[before]].map(|node| along(boundary.nodes.point[node]));
+        let ends = [boundary.nodes.previous[node], node, boundary.nodes.next[node]].map(|n| boundary.nodes.point[n]);
+        let (mut all, mut soft, mut law) = (0.0, 0.0, None);
+        for pair in ends.windows(2) {
+            let mut edge = pair[0];
+            while edge != pair[1] {
+                let next = boundary.after(edge);
+                let over = along(edge).min(to) - along(next).max(from);
+                let of_edge = boundary.trace[edge].map(|trace| self.trace_law[trace]);
+                if over > 0.0 {
+                    all += over;
+                    if let Some(own) = of_edge.filter(|&own| self.laws[own].softening.is_some()) {
+                        soft += over;
+                        law = law.or(Some(own));
+                    }
+                }
+                edge = next;
+            }
+        }
+        let Some(law) = law else { return BondHistory { lengths: [new.lengths[0], 0.0], ..new } };
+        BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, ..new }
     }
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch

@@ -50,6 +50,8 @@ pub struct NarrowPhase<'a> {
     pub impacts: Option<&'a [f64]>,
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
+    /// Whether joints of the laws soften.
+    pub softens: bool,
     /// Bonds of the contacts of the last step; empty in a model whose joints do not soften.
     pub bonds: &'a [BondHistory],
     /// Stress xx, yy, xy (Pa) before the first step, by position.

@@ -2,7 +2,7 @@
 
 use super::checks::{Check, Range, fail, number, optional};
 use crate::key::Key;
-use crate::{Integrator, JointLaw, JointLawKind, LawChange};
+use crate::{Case, Integrator, JointLaw, JointLawKind, LawChange};
 
 /// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
 const RESIDUAL: Range = Range::from(0.0).to(70.0);
@@ -131,9 +131,22 @@ pub fn validate_integrator(key: &Key, law: &JointLaw, integrator: Integrator) ->
 /// It does.
 pub fn validate_soft_change(key: &Key, change: &LawChange) -> Check {
     let message = format!(
-        "changes {:?}, whose strength falls with an energy of fracture; switch to another law with `switch_law`",
+        "changes {:?}, whose strength falls with an energy of fracture; let the joint break, or remove this",
         change.law
     );
+    fail(key, message)
+}
+
+/// Checks that a stage switches no law with an energy of fracture, which its bonds keep until they break.
+///
+/// # Errors
+/// It does.
+pub fn validate_soft_switch(key: &Key, case: &Case, from: &str) -> Check {
+    if !case.joint_laws.get(from).is_some_and(JointLaw::softens) {
+        return Ok(());
+    }
+    let message =
+        format!("is {from:?}, whose strength falls with an energy of fracture; let the joint break, or remove this");
     fail(key, message)
 }
 

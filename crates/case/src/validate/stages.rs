@@ -68,6 +68,7 @@ fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {
         let key = key.field("switch_law").index(i);
         laws.must_hold(&key.field("from"), from)?;
         laws.must_hold(&key.field("to"), to)?;
+        joints::validate_soft_switch(&key.field("from"), case, from)?;
         if from == to {
             return fail(&key.field("to"), format!("is {to:?}, the law to replace; name another law or remove it"));
         }
