@@ -49,8 +49,8 @@ impl Event {
     }
 }
 
-/// Everything that happened in dynamic stages, and overlaps of blocks and broken bonds in any stage, in order, and what is needed to see
-/// the next event.
+/// Everything that happened in dynamic stages, and overlaps of blocks and broken bonds in any stage, in order, and what
+/// is needed to see the next event.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Events {
     /// The events.

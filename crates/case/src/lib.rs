@@ -173,8 +173,8 @@ pub struct Domain {
     /// trimmed to it; default a tenth of the mesh size, 0 keeps what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extend_ends: Option<f64>,
-    /// Joint law of rock bridges between ends that stop in the rock, nearer than the mesh size to the outline or another
-    /// trace, and that line; default: the rock there is elastic and never breaks.
+    /// Joint law of rock bridges between ends that stop in the rock, nearer than the mesh size to the outline or
+    /// another trace, and that line; default: the rock there is elastic and never breaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bridge_law: Option<String>,
 }

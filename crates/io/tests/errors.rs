@@ -19,8 +19,8 @@ fn unknown_section_names_the_nearest_known_section() {
     assert_refused(
         "[mesh]",
         "[mehs]",
-        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, bridge, cut, \
-         domain, ensemble, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, \
+        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, bridge, \
+         cut, domain, ensemble, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, \
          law_region, load, mesh, monitor, output, port, quiet, random, random_correlation, rock, section, solver, \
          stage, title, water; rename or remove it",
     );

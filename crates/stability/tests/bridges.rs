@@ -1,4 +1,5 @@
-//! Rock bridges that break: Jennings' factor (A11), a face that a bridge holds, and brittle bridges beside ductile ones.
+//! Rock bridges that break: Jennings' factor (A11), a face that a bridge holds, and brittle bridges beside ductile
+//! ones.
 
 use std::path::Path;
 

@@ -180,8 +180,8 @@ impl Bond {
     }
 }
 
-/// Force (N/m) that gives the energy `left` (J/m) over a way (m) of which a unit of force takes `c` (m²/N); the greatest
-/// possible where the way is too short for that.
+/// Force (N/m) that gives the energy `left` (J/m) over a way (m) of which a unit of force takes `c` (m²/N); the
+/// greatest possible where the way is too short for that.
 fn spent(left: f64, way: f64, c: f64) -> f64 {
     let square = way * way - 4.0 * c * left;
     if square < 0.0 { 0.5 * way / c } else { 2.0 * left / (way + square.sqrt()) }

@@ -100,8 +100,8 @@ impl NarrowPhase<'_> {
         };
     }
 
-    /// The bond of a contact that would have a law and lengths (m), tributary and bonded: a bond that holds is as long as
-    /// it was. Of a contact without one the bonded length is what the law gives it.
+    /// The bond of a contact that would have a law and lengths (m), tributary and bonded: a bond that holds is as long
+    /// as it was. Of a contact without one the bonded length is what the law gives it.
     #[cold]
     #[inline(never)]
     fn bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {

@@ -64,8 +64,8 @@ pub(super) fn joints(case: &Case, low: Point, high: Point) -> Result<Joints, Inv
     Ok(Joints { traces, set_start, bridges, default_law })
 }
 
-/// Gives joints in a region their other law, rock bridges only where the region names theirs; a joint that leaves the region is divided at its border, and all but its
-/// first piece come after all others.
+/// Gives joints in a region their other law, rock bridges only where the region names theirs; a joint that leaves the
+/// region is divided at its border, and all but its first piece come after all others.
 fn change_laws(case: &Case, change: &LawRegion, bridges: &[usize], traces: &mut Traces) {
     let (region, Some(to)) = (points(&change.region), law_of(case, &change.to)) else { return };
     let from = change.from.as_ref().and_then(|name| law_of(case, name));

@@ -96,7 +96,8 @@ pub fn validate_energies(key: &Key, law: &JointLaw) -> Check {
     for ((name, peak, unit), residual) in names.into_iter().zip(residual) {
         if residual > peak {
             let message = format!(
-                "is {residual} {unit}, more than the peak of {peak} {unit}: a joint with `shear_energy` softens; lower it"
+                "is {residual} {unit}, more than the peak of {peak} {unit}: a joint with `shear_energy` \
+                 softens; lower it"
             );
             return fail(&key.field(name), message);
         }
