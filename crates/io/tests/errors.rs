@@ -162,7 +162,7 @@ fn missing_key_says_what_to_add() {
     assert_refused(
         "pressure = 1e4\n",
         "",
-        "100: load[1]: a load of kind pressure needs `pressure`, which is not given; add `pressure`",
+        "106: load[1]: a load of kind pressure needs `pressure`, which is not given; add `pressure`",
     );
 }
 

@@ -71,6 +71,12 @@ residual_tension = 0.0
 dilation_deg = 5.0
 dilation_slip = 0.01
 crush = 60e6
+
+[joint_law.bond]
+friction_deg = 45.0
+cohesion = 2e6
+residual_cohesion = 1.0
+tension = 1e6
 tension_energy = 100.0
 shear_energy = 1e4
 
