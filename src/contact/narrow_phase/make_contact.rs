@@ -127,10 +127,10 @@ impl NarrowPhase<'_> {
             while edge != pair[1] {
                 let next = boundary.after(edge);
                 let over = along(edge).min(to) - along(next).max(from);
-                let of_edge = boundary.trace[edge].map(|trace| self.trace_law[trace]);
+                let own = boundary.trace[edge].map_or(new.law, |trace| self.trace_law[trace]);
                 if over > 0.0 {
                     all += over;
-                    if let Some(own) = of_edge.filter(|&own| self.laws[own].softening.is_some()) {
+                    if self.laws[own].softening.is_some() {
                         soft += over;
                         law = law.or(Some(own));
                     }

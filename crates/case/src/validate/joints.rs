@@ -76,11 +76,9 @@ const ENERGY: Range = Range::above(0.0).to(1e9);
 pub fn validate_energies(key: &Key, law: &JointLaw) -> Check {
     optional(key, "tension_energy", law.tension_energy, ENERGY, "J/m²", "leave it out for a brittle joint")?;
     optional(key, "shear_energy", law.shear_energy, ENERGY, "J/m²", "leave it out for a brittle joint")?;
-    if let Some(energy) = law.tension_energy {
-        if law.tension == 0.0 {
-            let message = format!("is {energy} J/m², but `tension` is 0 Pa, so that nothing softens; add `tension`");
-            return fail(&key.field("tension_energy"), message);
-        }
+    if let Some(energy) = law.tension_energy.filter(|_| law.tension == 0.0) {
+        let message = format!("is {energy} J/m², but `tension` is 0 Pa, so that nothing softens; add `tension`");
+        return fail(&key.field("tension_energy"), message);
     }
     if law.softens() && law.residual_tension > 0.0 {
         let message = format!(
