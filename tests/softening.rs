@@ -69,9 +69,11 @@ fn shear_box(size: f64) -> String {
          [rock.rock]\ndensity = 1e6\nyoung = 1e14\npoisson = 0.25\n[joint_law.rock]\nfriction_deg = 35\n\
          residual_friction_deg = 30\ncohesion = 0.5e6\nresidual_cohesion = 0\ntension = 0.4e6\ntension_energy = 50\n\
          shear_energy = 500\nnormal_stiffness = 1e11\nshear_stiffness = 1e12\n[gravity]\ny = 0\n\
-         [in_situ]\nsxx = 0\nsyy = -1e6\n[[load]]\nkind = \"pressure\"\nedge = [[0, 0.002], [1, 0.002]]\npressure = 1e6\n\
+         [in_situ]\nsxx = 0\nsyy = -1e6\n[[load]]\nkind = \"pressure\"\nedge = [[0, 0.002], [1, 0.002]]\n\
+         pressure = 1e6\n\
          [[fix]]\nblock = [0.5, -0.05]\n[[initial_velocity]]\nblock = [0.5, 0.001]\nvelocity = [1.5, 0]\n\
-         [solver]\nfriction_delay = 0\ndt_max = 5e-7\n[[stage]]\nname = \"slide\"\nkind = \"dynamic\"\nduration = 1.0\ndamping = 0\n"
+         [solver]\nfriction_delay = 0\ndt_max = 5e-7\n[[stage]]\nname = \"slide\"\nkind = \"dynamic\"\nduration = 1.0\n\
+         damping = 0\n"
     )
 }
 

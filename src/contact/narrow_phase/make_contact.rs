@@ -138,6 +138,9 @@ impl NarrowPhase<'_> {
                 edge = next;
             }
         }
+        if all == 0.0 {
+            return new;
+        }
         let Some(law) = law else { return BondHistory { lengths: [new.lengths[0], 0.0], ..new } };
         BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, ..new }
     }
