@@ -224,6 +224,10 @@ enum enmm_event_kind
    * initial equilibrium, too, whose times are below 0.
    */
   ENMM_EVENT_OVERLAPPED = 3,
+  /**
+   * The last bond of a joint broke whose law has an energy of fracture; in the initial equilibrium, too.
+   */
+  ENMM_EVENT_BROKEN = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -514,6 +518,10 @@ typedef struct enmm_energies {
    * Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored.
    */
   double bolt_dissipation;
+  /**
+   * Energy of fracture of joints that soften.
+   */
+  double fracture;
 } enmm_energies;
 
 /**
@@ -576,6 +584,14 @@ typedef struct enmm_totals {
    * Pairs of blocks that have overlapped.
    */
   uint64_t overlapping_pairs;
+  /**
+   * Bonded length that has broken, of joints whose law has an energy of fracture (m).
+   */
+  double broken_length;
+  /**
+   * Joints whose last bond has broken.
+   */
+  uint64_t broken_joints;
 } enmm_totals;
 
 /**

@@ -55,6 +55,7 @@ mod polygons;
 mod quiet_boundary;
 mod runaway;
 mod sliding_converges;
+mod softening;
 mod vertex_rule;
 mod water_in_joints;
 mod yield_paths;

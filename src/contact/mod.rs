@@ -22,7 +22,7 @@ pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use constants::EntranceRule;
 pub use frame::Frames;
-pub use law::{Closure, JointLaw, LawId, Limits, Roughness};
+pub use law::{Bond, Closure, Damaged, JointLaw, LawId, Limits, Roughness, Softening};
 pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, entrance_edges, prefiltered};
 pub use pair::Pair;
 #[doc(hidden)]
@@ -30,5 +30,5 @@ pub use solver::reference;
 pub use solver::{Approach, BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
 pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};
-pub use vertex_edge::{ContactHistory, ContactSetting, ContactState, Crushed, VertexEdge};
+pub use vertex_edge::{BondHistory, ContactHistory, ContactSetting, ContactState, Crushed, VertexEdge};
 pub use vertex_rule::{ContactCache, ContactCandidate, PenetratingContacts, VertexRule};

@@ -4,7 +4,7 @@
 use crate::cover::{self, BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 
-use super::{Boundary, Closure, EdgeId, Frames, JointLaw, LawId, Limits, NodeId, Pair, SideId};
+use super::{Bond, Boundary, Closure, EdgeId, Frames, JointLaw, LawId, Limits, NodeId, Pair, SideId};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -70,6 +70,18 @@ impl ContactHistory {
     }
 }
 
+/// What a contact keeps of its bond from step to step, beside its history.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct BondHistory {
+    /// Share of the strength that is lost.
+    pub damage: f64,
+    /// Tributary length at first sight, and the bonded part of it (m): a bond is as long as it was until it breaks,
+    /// however its nodes move against each other.
+    pub lengths: [f64; 2],
+    /// Its law: that of the bonded part, where the faces of a contact lie on joints of two laws.
+    pub law: LawId,
+}
+
 /// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on
 /// and the law of its joint, is in the `ContactSetting`.
 #[doc(alias = "contact")]
@@ -95,8 +107,9 @@ pub struct VertexEdge {
     pub length: f64,
     /// Part of it on which cohesion and tension act (m).
     pub bonded: f64,
-    /// Mean normal stress (Pa) that friction feels on its faces; 0 in their first step.
-    pub mean_stress: f64,
+    /// The past that its law knows: of a rough joint the mean normal stress (Pa) that friction feels on its faces, 0 in
+    /// their first step; of one that softens the damage of its bond.
+    pub past: f64,
     /// Law of the joint.
     pub law: LawId,
     /// Whether the contact failed in tension in this step.
@@ -168,8 +181,18 @@ impl VertexEdge {
     #[inline(always)]
     pub fn limits(&self, setting: &ContactSetting) -> Limits {
         let limits = setting.laws[self.law].limits(self.bonded, self.history.intact).times(setting.strength);
-        let limits = if self.mean_stress > 0.0 { limits.under(self.mean_stress) } else { limits };
+        let limits = if self.past > 0.0 { limits.under(self.past) } else { limits };
         if self.delayed { limits.delayed(setting.felt_share, self.history.felt) } else { limits }
+    }
+
+    /// Its bond, if its joint softens and holds.
+    #[inline(always)]
+    pub fn bond(&self, setting: &ContactSetting) -> Option<Bond> {
+        let law = &setting.laws[self.law];
+        if law.softening.is_none() || !self.history.intact {
+            return None;
+        }
+        law.bond(self.stiffness, self.bonded, setting.strength, [self.past, self.history.slip])
     }
 
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).
@@ -222,8 +245,12 @@ impl VertexEdge {
 
     /// Energy (J/m) that the springs store at the step's start.
     pub fn stored_energy(&self, setting: &ContactSetting) -> f64 {
+        let sheared = 0.5 * self.stiffness[1] * self.history.sheared.powi(2);
+        if let Some(bond) = self.bond(setting) {
+            return bond.stored(self.gap) + sheared;
+        }
         let closure = if self.gap < 0.0 || self.history.state != ContactState::Open { -self.gap } else { 0.0 };
-        self.closure(setting).energy(closure) + 0.5 * self.stiffness[1] * self.history.sheared.powi(2)
+        self.closure(setting).energy(closure) + sheared
     }
 
     /// Shear force (N/m) that the spring has stored.
@@ -251,15 +278,24 @@ impl VertexEdge {
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
-    /// Shear force (N/m) that the spring stores after moving by `shear` (m), and the slip (m) of the node along it
-    /// (Eq. 15).
+    /// Greatest shear force (N/m) of a bond in a step that leaves it open by `opening` (m), and whose spring would
+    /// store the shear force `trial` (N/m) without slip.
+    fn bond_limit(&self, bond: &Bond, trial: f64, opening: f64) -> f64 {
+        bond.shear(self.history.normal_force, trial, 1.0 / self.stiffness[1], bond.damage_at(opening))
+    }
+
+    /// Shear force (N/m) that the spring stores after moving by `shear` (m) in a step that leaves the joint open by
+    /// `opening` (m), and the slip (m) of the node along it (Eq. 15).
     #[inline(always)]
-    pub fn shear_after(&self, shear: f64, setting: &ContactSetting) -> (f64, f64) {
+    pub fn shear_after(&self, shear: f64, opening: f64, setting: &ContactSetting) -> (f64, f64) {
         if self.history.state == ContactState::Open && !self.delayed {
             return (0.0, 0.0);
         }
-        let limit = self.shear_limit_now(setting);
         let trial = self.shear_stored() - self.stiffness[1] * shear;
+        let limit = match self.bond(setting) {
+            Some(bond) => self.bond_limit(&bond, trial.abs(), opening),
+            None => self.shear_limit_now(setting),
+        };
         let stored = trial.clamp(-limit, limit);
         (stored, (stored - trial) / self.stiffness[1])
     }
@@ -300,6 +336,10 @@ impl VertexEdge {
     /// Clamps the forces of the springs to the limits of the joint.
     #[inline(always)]
     pub fn decide(&mut self, normal: f64, shear: f64, setting: &ContactSetting) {
+        if self.bond(setting).is_some() {
+            let limit = self.shear_limit(normal, setting);
+            return self.bear([normal, shear], true, false, limit);
+        }
         let limits = self.limits(setting);
         let torn = normal < -limits.tension();
         let bears = !torn && (normal > 0.0 || limits.tension() > 0.0);

@@ -63,11 +63,15 @@ pub struct Totals {
     pub overlap_max: f64,
     /// Pairs of blocks that have overlapped.
     pub overlapping_pairs: u64,
+    /// Bonded length that has broken, of joints that soften (m).
+    pub broken_length: f64,
+    /// Joints whose last bond has broken.
+    pub broken_joints: u64,
 }
 
 /// Sums and extremes as outputs show them, but for the energies: the FMUs, and by their names the structures of C and
 /// Python. New ones go to the end.
-pub const TOTALS: [Quantity<Totals>; 13] = [
+pub const TOTALS: [Quantity<Totals>; 15] = [
     extreme("displacement_max", "m", "Largest displacement", |totals| totals.displacement_max),
     extreme("velocity_max", "m/s", "Largest velocity", |totals| totals.velocity_max),
     extreme("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
@@ -83,6 +87,8 @@ pub const TOTALS: [Quantity<Totals>; 13] = [
     Quantity::count("overlapping_pairs", "Pairs of blocks that have overlapped", |totals| {
         totals.overlapping_pairs as f64
     }),
+    extreme("broken_length", "m", "Bonded length that has broken so far", |totals| totals.broken_length),
+    Quantity::count("broken_joints", "Joints whose last bond has broken", |totals| totals.broken_joints as f64),
 ];
 
 const fn extreme(
@@ -129,6 +135,8 @@ impl Cosimulation {
             detached_blocks: events(EventKind::Detached),
             slipped_joints: events(EventKind::Slipped),
             failed_blocks: events(EventKind::Failed),
+            broken_length: state.counters.broken,
+            broken_joints: u64::from(events(EventKind::Broken)),
             overlap_max: state.events.overlap_max,
             overlapping_pairs: state.events.overlapped.len() as u64,
         }

@@ -45,6 +45,8 @@ pub enum EndChange {
     Trimmed,
     /// The end stays in the rock.
     Kept,
+    /// The end stays, and a rock bridge leads from it to the line.
+    Bridged,
 }
 
 /// An end in the rock, near a line.
@@ -58,6 +60,8 @@ pub struct NearEnd {
     pub gap: f64,
     /// The line.
     pub line: EndLine,
+    /// Where the way to the line meets it (m).
+    pub meets: Point,
     /// What became of it.
     pub change: EndChange,
 }
@@ -194,27 +198,28 @@ impl Lines {
 
     fn judge(&self, end: &End, Found { ahead, behind, beside }: Found) -> Option<(NearEnd, Vec<Point>)> {
         let EndDistances { join, list, .. } = self.distances;
-        let near = |gap, line, change| NearEnd { trace: end.trace, place: end.place, gap, line, change };
-        let moved = |along: f64| vec![end.place + end.direction * along];
+        let near = |gap, line, meets, change| NearEnd { trace: end.trace, place: end.place, gap, line, meets, change };
+        let along = |gap: f64| end.place + end.direction * gap;
         let gap = |found: Option<(f64, EndLine)>| found.map_or(f64::INFINITY, |(gap, _)| gap);
         let is_overshoot = gap(behind) <= gap(ahead);
         if let Some((gap, line)) = behind.filter(|(gap, _)| *gap < join && is_overshoot) {
-            return Some((near(gap, line, EndChange::Trimmed), moved(-gap)));
+            return Some((near(gap, line, along(-gap), EndChange::Trimmed), vec![along(-gap)]));
         }
         let beside = beside.filter(|(beside, ..)| *beside < list);
         let is_near = beside.is_some_and(|(beside, ..)| beside < join);
         let goes_there = |line: EndLine| is_near && beside.is_some_and(|(_, other, _)| other == line);
         if let Some((gap, line)) = ahead.filter(|(gap, line)| *gap < join || *gap < list && goes_there(*line)) {
-            return Some((near(gap, line, EndChange::Extended), moved(gap)));
+            return Some((near(gap, line, along(gap), EndChange::Extended), vec![along(gap)]));
         }
         if let Some((beside, line, foot)) = beside.filter(|_| is_near) {
             // The stretch bends behind its last meeting, so that all its meetings stay where they are.
             let free = gap(behind).min(list);
             let bend = (free < end.length).then(|| end.place - end.direction * free);
-            return Some((near(beside, line, EndChange::Extended), bend.into_iter().chain([foot]).collect()));
+            return Some((near(beside, line, foot, EndChange::Extended), bend.into_iter().chain([foot]).collect()));
         }
-        let nearest = ahead.or(beside.map(|(gap, line, _)| (gap, line))).filter(|(gap, _)| *gap < list);
-        nearest.map(|(gap, line)| (near(gap, line, EndChange::Kept), Vec::new()))
+        let ahead = ahead.map(|(gap, line)| (gap, line, along(gap)));
+        let nearest = ahead.or(beside).filter(|(gap, ..)| *gap < list);
+        nearest.map(|(gap, line, meets)| (near(gap, line, meets, EndChange::Kept), Vec::new()))
     }
 
     /// The lines about an end; nothing where it is on one.

@@ -112,15 +112,28 @@ pub struct JointSetParameters {
 /// assert_eq!(traces.len(), 10); // horizontal lines, one per metre of height
 /// ```
 pub fn generate(set: &JointSetParameters, region: &[Point]) -> Result<Vec<[Point; 2]>, GeometryError> {
+    Ok(generate_within(set, region, CUTOFFS)?.traces)
+}
+
+/// Traces of a joint set and the rock bridges between those of one line.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct BridgedSet {
+    /// Traces, as [`generate`] gives them.
+    pub traces: Vec<[Point; 2]>,
+    /// Bridges from the end of a trace to the start of the next one on its line, inside the region.
+    pub bridges: Vec<[Point; 2]>,
+}
+
+/// As [`generate`], with the rock bridges.
+///
+/// # Errors
+/// As [`generate`].
+pub fn generate_bridged(set: &JointSetParameters, region: &[Point]) -> Result<BridgedSet, GeometryError> {
     generate_within(set, region, CUTOFFS)
 }
 
 /// As [`generate`], with other cutoffs.
-fn generate_within(
-    set: &JointSetParameters,
-    region: &[Point],
-    cutoffs: Cutoffs,
-) -> Result<Vec<[Point; 2]>, GeometryError> {
+fn generate_within(set: &JointSetParameters, region: &[Point], cutoffs: Cutoffs) -> Result<BridgedSet, GeometryError> {
     check(set)?;
     let region = validate_loop(region, "region of a joint set")?;
     let (low, high) = bounds(&region);
@@ -135,7 +148,7 @@ fn generate_within(
     let (bottom, top) = range(normal);
     let mut random = Random::new(set.seed);
     let piece_min = PIECE_RATIO_MIN * (high - low).norm();
-    let mut traces = Vec::new();
+    let mut made = BridgedSet::default();
     let mut tried = 0;
     // A turned trace reaches across its line, so that lines just outside the region matter too.
     let half = 0.5 * set.trace_length.map_or(end - start, |length| length * set.reach(cutoffs));
@@ -147,6 +160,7 @@ fn generate_within(
     let mut line = waiting.pop().unwrap_or(top);
     while line < top + margin {
         let mut position = first_start(set, start, &mut random);
+        let mut end_before = None;
         while position < end {
             tried += 1;
             if tried > TRACES_MAX {
@@ -159,7 +173,10 @@ fn generate_within(
             let turn = random.turn(set, cutoffs);
             let stretch = if set.trace_length.is_none() { 1.0 / turn.x } else { 1.0 };
             let half = (along * turn.x + normal * turn.y) * (0.5 * length * stretch);
-            clip_to(&region, middle - half, middle + half, piece_min, &mut traces);
+            clip_to(&region, middle - half, middle + half, piece_min, &mut made.traces);
+            if let Some(from) = end_before.replace(middle + half).filter(|_| set.gap > 0.0) {
+                clip_to(&region, from, middle - half, piece_min, &mut made.bridges);
+            }
             position += length + set.gap;
         }
         line = match waiting.pop() {
@@ -167,7 +184,7 @@ fn generate_within(
             None => line + random.spread(set.spacing_spread, set.spacing, set.spacing_sd),
         };
     }
-    Ok(traces)
+    Ok(made)
 }
 
 impl JointSetParameters {
@@ -418,7 +435,7 @@ mod tests {
                 seed,
                 ..JointSetParameters::default()
             };
-            let traces = generate_within(&set, &region, Cutoffs { reach, ..CUTOFFS }).expect("a set");
+            let traces = generate_within(&set, &region, Cutoffs { reach, ..CUTOFFS }).expect("a set").traces;
             traces.iter().map(|[a, b]| (b - a).norm()).sum::<f64>() / (side * side)
         };
         let all: Vec<f64> = (0..seeds).map(of_seed).collect();

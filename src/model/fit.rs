@@ -3,7 +3,7 @@
 
 use std::fmt::Display;
 
-use crate::contact::{BoltState, ContactHistory, NeighbourList};
+use crate::contact::{BoltState, BondHistory, ContactHistory, NeighbourList};
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
 
@@ -133,13 +133,14 @@ impl Simulation {
             plastic: _,
             columns: _,
             contacts,
+            bonds,
             friction_delay,
             neighbours,
             support_force: _,
             support_rest: _,
             fix_active: _,
             removed: _,
-            laws: _,
+            laws,
             law_switch: _,
             bolts: _,
             drive: Drive { from, to, since, until },
@@ -150,6 +151,9 @@ impl Simulation {
         self.check_clock(state)?;
         self.check_motion(state)?;
         self.check_contacts(contacts)?;
+        let is_soft = laws.iter().any(|law| law.softening.is_some());
+        length("bonds", bonds.len(), if is_soft { contacts.len() } else { 0 })?;
+        check_bonds(bonds, laws.len())?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
@@ -325,11 +329,12 @@ impl Simulation {
 
     fn check_events(&self, events: &Events) -> Fit {
         let (blocks, traces) = (self.state().removed.len(), self.model().trace_law.len());
-        let Events { list, touching, detached, slipped, failed, overlapped, overlap_max } = events;
+        let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max } = events;
         length("events.touching", touching.len(), blocks)?;
         length("events.detached", detached.len(), blocks)?;
         length("events.slipped", slipped.len(), traces + 1)?;
         length("events.failed", failed.len(), blocks)?;
+        length("events.bonded", bonded.len(), if bonded.is_empty() { 0 } else { traces })?;
         between("events.overlap_max", *overlap_max, 0.0, LENGTH)?;
         for (k, pair) in overlapped.iter().enumerate() {
             pair.iter().try_for_each(|b| index(format_args!("events.overlapped[{k}]"), b.number(), blocks))?;
@@ -343,7 +348,9 @@ impl Simulation {
             }
             match kind {
                 EventKind::Slipped if *subject == u32::MAX => Ok(()),
-                EventKind::Slipped => index(format_args!("events.list[{k}].subject"), *subject, traces),
+                EventKind::Slipped | EventKind::Broken => {
+                    index(format_args!("events.list[{k}].subject"), *subject, traces)
+                }
                 EventKind::Detached | EventKind::Failed | EventKind::Overlapped => {
                     index(format_args!("events.list[{k}].subject"), *subject, blocks)
                 }
@@ -351,6 +358,15 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+fn check_bonds(bonds: &[BondHistory], laws: usize) -> Fit {
+    for (k, &BondHistory { damage, lengths, law }) in bonds.iter().enumerate() {
+        between(format_args!("bonds[{k}].damage"), damage, 0.0, 1.0)?;
+        index(format_args!("bonds[{k}].law"), law.number(), laws)?;
+        lengths.iter().try_for_each(|&length| between(format_args!("bonds[{k}].lengths"), length, 0.0, LENGTH))?;
+    }
+    Ok(())
 }
 
 /// Checks every energy and work of a ledger.
@@ -364,6 +380,7 @@ pub fn check_ledger(ledger: &Ledger) -> Fit {
         potential,
         stored,
         friction,
+        fracture,
         contact_work,
         support_work,
         damping,
@@ -375,7 +392,8 @@ pub fn check_ledger(ledger: &Ledger) -> Fit {
         external_work,
         baseline,
     } = ledger;
-    let works = [contact_work, support_work, bolt_work, radiation, external_work, damping, yielding, friction];
+    let works =
+        [contact_work, support_work, bolt_work, radiation, external_work, damping, yielding, friction, fracture];
     numbers("ledger: energies", &[kinetic, strain, potential, stored, bolt_stored, bolt_installed, baseline], FORCE)?;
     numbers("ledger: works", &works, FORCE)
 }
@@ -391,6 +409,7 @@ fn check_counters(counters: &Counters) -> Fit {
         deepest_contact,
         crushed,
         crushing,
+        broken,
         penetration_max,
         dt_min,
         dt_max,
@@ -413,6 +432,7 @@ fn check_counters(counters: &Counters) -> Fit {
     }
     number("counters.deepest_contact", deepest_contact, LENGTH)?;
     number("counters.crushing", crushing, FORCE)?;
+    between("counters.broken", broken, 0.0, LENGTH)?;
     number("counters.penetration_max", penetration_max, LENGTH)?;
     number("counters.dt_min", dt_min, TIME)?;
     number("counters.dt_max", dt_max, TIME)

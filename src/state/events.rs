@@ -15,6 +15,8 @@ pub enum EventKind {
     Failed,
     /// Two blocks overlap by more than the mesh or the contacts between them explain.
     Overlapped,
+    /// The last bond of a joint that softens broke: of a rock bridge, as a rule.
+    Broken,
 }
 
 /// Something that happened for the first time.
@@ -47,8 +49,8 @@ impl Event {
     }
 }
 
-/// Everything that happened in dynamic stages, and overlaps of blocks in any stage, in order, and what is needed to see
-/// the next event.
+/// Everything that happened in dynamic stages, and overlaps of blocks and broken bonds in any stage, in order, and what
+/// is needed to see the next event.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Events {
     /// The events.
@@ -61,6 +63,8 @@ pub struct Events {
     pub slipped: Vec<bool>,
     /// Blocks that have failed.
     pub failed: Vec<bool>,
+    /// Joint traces that a bond held together at the end of the last step; empty in a model whose joints do not soften.
+    pub bonded: Vec<bool>,
     /// Pairs of blocks that have overlapped, in order; of each the lower id first.
     pub overlapped: Vec<[BlockId; 2]>,
     /// Greatest depth of these overlaps so far (m); 0 for none.
@@ -76,6 +80,7 @@ impl Events {
             detached: vec![false; blocks],
             slipped: vec![false; traces + 1],
             failed: vec![false; blocks],
+            bonded: Vec::new(),
             overlapped: Vec::new(),
             overlap_max: 0.0,
         }
@@ -83,12 +88,13 @@ impl Events {
 
     /// Copies without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { list, touching, detached, slipped, failed, overlapped, overlap_max } = other;
+        let Self { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max } = other;
         self.list.clone_from(list);
         self.touching.clone_from(touching);
         self.detached.clone_from(detached);
         self.slipped.clone_from(slipped);
         self.failed.clone_from(failed);
+        self.bonded.clone_from(bonded);
         self.overlapped.clone_from(overlapped);
         self.overlap_max = *overlap_max;
     }

@@ -18,6 +18,8 @@ pub struct Ledger {
     pub stored: f64,
     /// Energy turned into heat by slip.
     pub friction: f64,
+    /// Energy of fracture: what joints that soften took to break.
+    pub fracture: f64,
     /// Work of contact forces.
     pub contact_work: f64,
     /// Work of supports.
@@ -44,6 +46,7 @@ impl Ledger {
     /// Adds the works of another ledger times `share`; energies of now stay.
     pub fn add_works(&mut self, works: &Ledger, share: f64) {
         self.friction += share * works.friction;
+        self.fracture += share * works.fracture;
         self.contact_work += share * works.contact_work;
         self.support_work += share * works.support_work;
         self.damping += share * works.damping;
@@ -53,9 +56,10 @@ impl Ledger {
         self.external_work += share * works.external_work;
     }
 
-    /// Energy dissipated by contact springs: dashpots, impacts and the numerical damping of the implicit spring.
+    /// Energy dissipated by contact springs but for slip and fracture: dashpots, impacts and the numerical damping of
+    /// the implicit spring.
     pub fn contact_dissipation(&self) -> f64 {
-        -(self.contact_work + self.support_work) - self.stored - self.friction
+        -(self.contact_work + self.support_work) - self.stored - self.friction - self.fracture
     }
 
     /// Energy dissipated by bolts: yielding, rupture, and the numerical damping of the implicit spring.
@@ -91,7 +95,7 @@ const COMPOSED: [&str; 5] = ["contact_dissipation", "residual", "baseline", "bol
 
 /// Energies and works as outputs show them: `history.csv` in this order, `summary.json`, the FMUs, and by their names
 /// the structures of C and Python. New ones go to the end.
-pub const ENERGIES: [Quantity<Ledger>; 18] = [
+pub const ENERGIES: [Quantity<Ledger>; 19] = [
     energy(["kinetic", "kinetic_energy"], "Kinetic energy per metre of depth", |ledger| ledger.kinetic),
     energy(["strain", "strain_energy"], "Strain energy per metre of depth", |ledger| ledger.strain),
     energy(["potential", "potential_energy"], "Potential energy of gravity since the start", |ledger| ledger.potential),
@@ -124,6 +128,7 @@ pub const ENERGIES: [Quantity<Ledger>; 18] = [
     energy(["bolt_dissipation", "bolt_dissipation"], "Energy that bolts lost by yielding and rupture", |ledger| {
         ledger.bolt_dissipation()
     }),
+    energy(["fracture", "fracture_energy"], "Energy of fracture of joints that soften", |ledger| ledger.fracture),
 ];
 
 const fn energy(names: [&'static str; 2], text: &'static str, get: fn(&Ledger) -> f64) -> Quantity<Ledger> {
@@ -167,6 +172,7 @@ mod tests {
             radiation: 4096.0,
             external_work: 8192.0,
             baseline: 16384.0,
+            fracture: 32768.0,
         }
     }
 
@@ -197,7 +203,7 @@ mod tests {
         };
         let still: Vec<&str> = fields.keys().map(String::as_str).filter(|field| largest(field) != 3.0).collect();
         assert_eq!(still, ["baseline", "bolt_installed"]);
-        assert!(fields.contains_key("support_work") && fields.len() == 15);
+        assert!(fields.contains_key("support_work") && fields.len() == 16);
     }
 
     #[test]

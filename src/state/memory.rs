@@ -68,6 +68,7 @@ impl State {
             stage_displacement,
             stage_force,
             contacts,
+            bonds,
             neighbours,
             plastic,
             columns,
@@ -97,7 +98,7 @@ impl State {
         let of_columns = columns.iter().map(|column| sum(&[&column.displacement, &column.velocity])).sum::<usize>();
         vec![
             ("motion", sum(&[displacement, velocity, acceleration, stage_displacement, stage_force]) + of_columns),
-            ("contacts", contacts.bytes()),
+            ("contacts", contacts.bytes() + bonds.bytes()),
             ("near pairs", neighbours.bytes()),
             ("plastic strain", plastic.bytes()),
             ("supports and bolts", sum(&[support_force, support_rest, fix_active, bolts])),
@@ -188,6 +189,6 @@ fn inputs(inputs: &Inputs) -> usize {
 }
 
 fn events(events: &Events) -> usize {
-    let Events { list, touching, detached, slipped, failed, overlapped, overlap_max: _ } = events;
-    sum(&[list, touching, detached, slipped, failed, overlapped])
+    let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max: _ } = events;
+    sum(&[list, touching, detached, slipped, failed, bonded, overlapped])
 }

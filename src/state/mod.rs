@@ -29,7 +29,7 @@ pub use workspace::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{BoltState, ContactHistory, JointLaw, LawId, NeighbourList};
+use crate::contact::{BoltState, BondHistory, ContactHistory, JointLaw, LawId, NeighbourList};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnState, PlasticStrain};
 
@@ -78,6 +78,8 @@ pub struct State {
     pub velocity: Vec<Vector>,
     /// Contacts of the last step, ordered by node and side.
     pub contacts: Vec<ContactHistory>,
+    /// Bond of each of them; empty in a model whose joints do not soften.
+    pub bonds: Vec<BondHistory>,
     /// How friction is delayed in a dynamic stage; none before its first step, and in static stages.
     pub friction_delay: Option<FrictionDelay>,
     /// Near pairs of the last search.
@@ -138,6 +140,7 @@ impl State {
             displacement,
             velocity,
             contacts,
+            bonds,
             friction_delay,
             neighbours,
             support_force,
@@ -166,6 +169,7 @@ impl State {
         self.displacement.clone_from(displacement);
         self.velocity.clone_from(velocity);
         self.contacts.clone_from(contacts);
+        self.bonds.clone_from(bonds);
         self.support_force.clone_from(support_force);
         self.support_rest.clone_from(support_rest);
         self.fix_active.clone_from(fix_active);
@@ -205,6 +209,8 @@ pub struct Counters {
     pub crushed: u64,
     /// Energy (J/m) that crushed rock took; part of what contacts dissipate.
     pub crushing: f64,
+    /// Bonded length (m) that has broken, of joints that soften.
+    pub broken: f64,
     /// Largest penetration of all steps (m).
     pub penetration_max: f64,
     /// Shortest sub-step (s).

@@ -4,6 +4,7 @@ use crate::contact::{self, EdgeId, Frames, NarrowPhase, OpenClose, SearchView, V
 use crate::geometry::{Point, Vector};
 use crate::state::{Model, SelectionBuffers, State};
 
+use super::bonds::has_bonds;
 use super::{Regime, Substep};
 
 /// Contacts or points of the boundary below which a loop over them is not split between threads.
@@ -89,6 +90,8 @@ pub fn entrance(
         dt: reach.ahead,
         impacts: has_impacts.then(|| &model.mass_matrix.inverse_total[..]),
         first: state.step == 0,
+        softens: has_bonds(&state.laws),
+        bonds: &state.bonds,
         in_situ: model.in_situ.as_ref(),
         serial: step.serial,
     };

@@ -1,6 +1,6 @@
 //! Sees what happens for the first time: a block that loses its last contact, a joint that slips, a block that fails.
 
-use crate::contact::ContactState;
+use crate::contact::{ContactState, LawId};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::state::{Event, EventKind, Model, State, Workspace};
@@ -10,7 +10,8 @@ use super::Regime;
 /// Slip (m) relative to the mesh size from which a joint counts as slipped.
 const SLIP_MIN: f64 = 1e-6;
 
-/// Notes what the step that ends at `time` (s) has brought; static stages bring nothing, since their path is no motion.
+/// Notes what the step that ends at `time` (s) has brought; static stages bring nothing but broken bonds, since their
+/// path is no motion.
 pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Workspace, time: f64) {
     let touching = &mut workspace.motion.touching;
     touching.clear();
@@ -19,6 +20,9 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
         let node = model.boundary.nodes.point[contact.node];
         touching[model.boundary.block[node]] = true;
         touching[model.boundary.block[contact.edge]] = true;
+    }
+    if !state.bonds.is_empty() {
+        note_broken(model, state, time);
     }
     if let Regime::Dynamic { .. } = regime {
         note_detached(state, workspace, time);
@@ -38,6 +42,26 @@ fn note_detached(state: &mut State, workspace: &Workspace, time: f64) {
             events.list.push(Event::of(EventKind::Detached, block.number(), time));
         }
     }
+}
+
+fn note_broken(model: &Model, state: &mut State, time: f64) {
+    let mut held = std::mem::take(&mut state.events.bonded);
+    held.resize(model.trace_law.len(), false);
+    let softens = |law: LawId| state.laws[law].softening.is_some();
+    let mut holds = vec![false; held.len()];
+    for contact in state.contacts.iter().filter(|contact| contact.intact) {
+        let trace = model.boundary.trace[contact.edge].or_else(|| model.boundary.node_trace(contact.node));
+        if let Some(trace) = trace.filter(|&trace| softens(state.law_switch[model.trace_law[trace.index()]])) {
+            holds[trace.index()] = true;
+        }
+    }
+    for (trace, (was, is)) in held.iter().zip(&holds).enumerate() {
+        let soft = softens(state.law_switch[model.trace_law[trace]]);
+        if *was && !is && soft {
+            state.events.list.push(Event::of(EventKind::Broken, trace as u32, time));
+        }
+    }
+    state.events.bonded = holds;
 }
 
 fn note_slipped(model: &Model, state: &mut State, time: f64) {

@@ -40,7 +40,8 @@ pub fn delay_friction(
     for contacts in contacts.chunk_by_mut(|a, b| block(a) == block(b)) {
         find_faces(contacts, delay, &mut selection.faces);
         for contact in contacts {
-            follow_face(contact, &selection.faces, delay, step.dt);
+            let is_rough = state.laws[contact.law].roughness.is_some();
+            follow_face(contact, &selection.faces, (delay, is_rough), step.dt);
         }
     }
 }
@@ -68,7 +69,7 @@ fn find_faces(contacts: &[VertexEdge], delay: Option<FrictionDelay>, FaceBuffers
 fn follow_face(
     contact: &mut VertexEdge,
     FaceBuffers { faces, of_side }: &FaceBuffers,
-    delay: Option<FrictionDelay>,
+    (delay, is_rough): (Option<FrictionDelay>, bool),
     dt: f64,
 ) {
     let face = &faces[of_side[contact.history.side] as usize];
@@ -76,7 +77,9 @@ fn follow_face(
         (contact.history.age, contact.history.felt, contact.history.kept_stiffness) = (0.0, 0.0, 0.0);
         return;
     }
-    contact.mean_stress = if face.length > 0.0 { face.felt / face.length } else { 0.0 };
+    if is_rough {
+        contact.past = if face.length > 0.0 { face.felt / face.length } else { 0.0 };
+    }
     contact.delayed = delay.is_some_and(|delay| delay.time > 0.0 && f64::from(face.age) >= YOUNG * delay.time);
     contact.history.age = face.age + dt as f32;
 }

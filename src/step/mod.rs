@@ -2,6 +2,7 @@
 //! nothing of files.
 
 mod applied;
+mod bonds;
 mod contacts;
 mod events;
 mod explicit;

@@ -41,7 +41,7 @@ impl Kernel for Settle<'_> {
             // Not by `map` of an array, for which the contact would be written to memory.
             let relative = |velocity: &[Vector]| contact.relative(setting.boundary, velocity);
             let [before, after] = [relative(velocities[0]), relative(velocities[1])];
-            let (stored, slipped) = contact.shear_after(after[1] * dt, &setting);
+            let (stored, slipped) = contact.shear_after(after[1] * dt, contact.gap + after[0] * dt, &setting);
             let moved = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick);
             add_works(outcome, contact, moved, [stored, slipped]);
             let law = &setting.laws[contact.law];
@@ -49,7 +49,7 @@ impl Kernel for Settle<'_> {
             let (way, raised) = law.dilate(contact.history.way, slipped, steepest);
             outcome.dilation += raised * (contact.history.normal_force + 0.5 * contact.stiffness[0] * raised);
             add_depths(outcome, contact);
-            *history = history_of(contact, stored, slipped);
+            *history = history_of(contact, stored, slipped, &setting);
             let crushed = contact.crush(&setting);
             add_crush(outcome, &crushed);
             (history.way, history.rest) = (way, history.rest + raised - crushed.closes);
@@ -95,11 +95,11 @@ fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
 
 /// History of a contact that stores a shear force (N/m) and has slipped (m).
 #[inline(always)]
-fn history_of(contact: &VertexEdge, stored: f64, slipped: f64) -> ContactHistory {
+fn history_of(contact: &VertexEdge, stored: f64, slipped: f64, setting: &ContactSetting) -> ContactHistory {
     let mut history = contact.history;
     history.sheared = stored / contact.stiffness[1];
     history.slip += slipped.abs();
-    history.intact &= !contact.torn && slipped == 0.0;
+    history.intact &= !contact.torn && slipped == 0.0 || contact.bond(setting).is_some();
     history
 }
 

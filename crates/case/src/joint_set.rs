@@ -144,6 +144,10 @@ pub struct JointSet {
     /// Name of a set before this one, or of a joint law: traces end where they meet one of that set or of that law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ends_on: Option<String>,
+    /// Joint law, by name, of the rock bridges between traces on one line; default: the rock there is elastic and never
+    /// breaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bridge_law: Option<String>,
     /// Angle (degrees) of the mean pole out of the section, which follows from `dip_direction_deg`.
     #[serde(default, skip_serializing_if = "is_zero")]
     #[cfg_attr(feature = "schema", schemars(skip))]
@@ -171,6 +175,17 @@ fn is_zero(value: &f64) -> bool {
 pub struct Cut {
     /// At least two points (m).
     pub points: PointList,
+}
+
+/// A rock bridge that can break: a line of rock that a joint law with the strength of the rock holds together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Bridge {
+    /// At least two points (m).
+    pub points: PointList,
+    /// Joint law by name, with the strength of the rock.
+    pub law: String,
 }
 
 /// A region in which joints take another law, such as that of weathered rock; joints are divided at its border.

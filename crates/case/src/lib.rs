@@ -27,7 +27,7 @@ pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
-pub use joint_set::{AngleDistribution, Cut, Distribution, JointSet, LawRegion, Section, Side};
+pub use joint_set::{AngleDistribution, Bridge, Cut, Distribution, JointSet, LawRegion, Section, Side};
 pub use orientation::{AZIMUTH, Orientation, Orientations};
 pub use pictures::{PictureKind, Pictures};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
@@ -80,6 +80,9 @@ pub struct Case {
     /// Regions whose joints have another law, in order.
     #[serde(default, rename = "law_region", skip_serializing_if = "Vec::is_empty")]
     pub law_regions: Vec<LawRegion>,
+    /// Rock bridges that can break, drawn by hand.
+    #[serde(default, rename = "bridge", skip_serializing_if = "Vec::is_empty")]
+    pub bridges: Vec<Bridge>,
     /// Acceleration of gravity.
     #[serde(default)]
     pub gravity: Gravity,
@@ -233,6 +236,10 @@ pub struct Domain {
     /// trimmed to it; default a tenth of the mesh size, 0 keeps what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extend_ends: Option<f64>,
+    /// Joint law of rock bridges between ends that stop in the rock, nearer than the mesh size to the outline or
+    /// another trace, and that line; default: the rock there is elastic and never breaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bridge_law: Option<String>,
 }
 
 /// Equilateral lattice: node(i, j) = origin + i·a1 + j·a2, a1 = size·(cos, sin)(angle), a2 = a1 turned by +60°.
@@ -337,7 +344,7 @@ impl Case {
 
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
     pub fn is_whole(&self) -> bool {
-        self.joints.is_empty() && self.joint_sets.is_empty() && self.bolts.is_empty()
+        self.joints.is_empty() && self.joint_sets.is_empty() && self.bridges.is_empty() && self.bolts.is_empty()
     }
 }
 
@@ -418,9 +425,22 @@ pub struct JointLaw {
     /// the rock does not crush.
     #[serde(default)]
     pub crush: Option<f64>,
+    /// Energy of fracture in tension (J/m²): the tensile strength falls with the opening until this much is spent;
+    /// default: it is lost at once. Not with `residual_tension`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension_energy: Option<f64>,
+    /// Energy of fracture in shear (J/m²), beyond the heat of residual friction: friction and cohesion fall from their
+    /// peak values to the residual ones with the slip until this much is spent; default: they fall at once.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_energy: Option<f64>,
 }
 
 impl JointLaw {
+    /// Whether it loses its peak strength step by step, with an energy of fracture.
+    pub fn softens(&self) -> bool {
+        self.tension_energy.is_some() || self.shear_energy.is_some()
+    }
+
     /// A Mohr–Coulomb joint with friction (degrees) alone.
     pub fn frictional(friction_deg: f64) -> Self {
         Self {
@@ -439,6 +459,8 @@ impl JointLaw {
             jcs: None,
             closure_max: None,
             crush: None,
+            tension_energy: None,
+            shear_energy: None,
         }
     }
 }

@@ -41,6 +41,7 @@ impl TraceEndRecord {
                 EndChange::Extended => "extended",
                 EndChange::Trimmed => "trimmed",
                 EndChange::Kept => "kept",
+                EndChange::Bridged => "bridged",
             },
         };
         built.ends.iter().map(record).collect()

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use enmm::engine_version;
 use enmm::model::case::{StageKind, Support};
 use enmm::model::tables::Seconds;
-use enmm::model::{Ledger, Simulation, StepError};
+use enmm::model::{EventKind, Ledger, Simulation, State, StepError};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
@@ -72,6 +72,10 @@ pub struct Summary {
     pub overlap_max: f64,
     /// Pairs of blocks that have overlapped.
     pub overlapping_pairs: usize,
+    /// Bonded length (m) that has broken, of joints whose law has an energy of fracture.
+    pub broken_length: f64,
+    /// Joints whose last bond has broken, as numbers of traces, in the order of time.
+    pub broken_joints: Vec<u32>,
     /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
@@ -271,6 +275,12 @@ pub struct OpenCloseRecord {
 }
 
 /// Writes all energies of the table (J/m), and the residual over the largest term.
+/// Joints whose last bond has broken, in the order of time.
+fn broken(state: &State) -> Vec<u32> {
+    let events = state.events.list.iter();
+    events.filter(|event| event.kind == EventKind::Broken).map(|event| event.subject).collect()
+}
+
 fn energies<S: Serializer>(ledger: &Ledger, out: S) -> Result<S::Ok, S::Error> {
     let mut map = out.serialize_map(Some(ENERGIES.len() + 1))?;
     for energy in &ENERGIES {
@@ -362,6 +372,8 @@ impl Summary {
             penetration_max_relative: counters.penetration_max / model.covers.mesh.size,
             overlap_max: state.events.overlap_max,
             overlapping_pairs: state.events.overlapped.len(),
+            broken_length: state.counters.broken,
+            broken_joints: broken(state),
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             trace_ends: TraceEndRecord::all(simulation.built()),

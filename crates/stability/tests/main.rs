@@ -1,5 +1,6 @@
 //! Tests of factors of safety.
 
+mod bridges;
 #[path = "../../../tests/common/mod.rs"]
 mod common;
 mod continuum;

@@ -107,6 +107,8 @@ pub enum enmm_event_kind {
     /// about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
     /// initial equilibrium, too, whose times are below 0.
     ENMM_EVENT_OVERLAPPED = 3,
+    /// The last bond of a joint broke whose law has an energy of fracture; in the initial equilibrium, too.
+    ENMM_EVENT_BROKEN = 4,
 }
 
 /// Weight of a message.
@@ -244,6 +246,8 @@ pub struct enmm_energies {
     pub bolt_installed: f64,
     /// Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored.
     pub bolt_dissipation: f64,
+    /// Energy of fracture of joints that soften.
+    pub fracture: f64,
 }
 
 /// Sums and extremes over the model.
@@ -278,6 +282,10 @@ pub struct enmm_totals {
     pub overlap_max: f64,
     /// Pairs of blocks that have overlapped.
     pub overlapping_pairs: u64,
+    /// Bonded length that has broken, of joints whose law has an energy of fracture (m).
+    pub broken_length: f64,
+    /// Joints whose last bond has broken.
+    pub broken_joints: u64,
 }
 
 /// A contact between a boundary node of one block and an edge of another.
@@ -412,11 +420,12 @@ sized! {
     enmm_energies 128 {
         struct_size kinetic strain potential stored friction contact_work support_work damping external_work baseline
         contact_dissipation residual yielding bolt_work radiation bolt_stored bolt_installed bolt_dissipation
+        fracture
     }
     enmm_totals 72 {
         struct_size displacement_max velocity_max penetration_max unbalanced critical_dt open_contacts
         slipping_contacts locked_contacts detached_blocks slipped_joints failed_blocks
-        overlap_max overlapping_pairs
+        overlap_max overlapping_pairs broken_length broken_joints
     }
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress

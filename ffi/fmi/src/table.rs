@@ -556,7 +556,7 @@ fn port_motions(kind: PortKind) -> &'static [Row] {
 type TotalRow = (Total, &'static str, &'static str, &'static str, Type);
 
 /// What the numbers of the last event's kind mean.
-const KINDS: &str = "Last event: 0 none, 1 detached, 2 slipped, 3 failed, 4 overlapped";
+const KINDS: &str = "Last event: 0 none, 1 detached, 2 slipped, 3 failed, 4 overlapped, 5 bond broken";
 
 /// Outputs of the whole model that no other interface has under these names.
 const OWN_TOTALS: [TotalRow; 5] = [

@@ -48,6 +48,8 @@ class EventKind(IntEnum):
     """Two blocks overlap by more than 1 % of the mesh size, or deeper than the contacts between them explain: results
     about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
     initial equilibrium, too, whose times are below 0."""
+    BROKEN = 4
+    """The last bond of a joint broke whose law has an energy of fracture; in the initial equilibrium, too."""
 
 
 class PortKind(IntEnum):
@@ -150,6 +152,7 @@ class Energies(ctypes.Structure):
         ("bolt_stored", c_double),
         ("bolt_installed", c_double),
         ("bolt_dissipation", c_double),
+        ("fracture", c_double),
     ]
 
 
@@ -171,6 +174,8 @@ class Totals(ctypes.Structure):
         ("failed_blocks", c_uint32),
         ("overlap_max", c_double),
         ("overlapping_pairs", c_uint64),
+        ("broken_length", c_double),
+        ("broken_joints", c_uint64),
     ]
 
 

@@ -67,6 +67,8 @@ class Energies(NamedTuple):
     """Energy that bolts were installed with by their pretension."""
     bolt_dissipation: float
     """Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored."""
+    fracture: float
+    """Energy of fracture of joints that soften."""
 
 
 class Totals(NamedTuple):
@@ -98,6 +100,10 @@ class Totals(NamedTuple):
     """Greatest depth of overlaps of blocks so far (m), see `EventKind.OVERLAPPED`; 0 for none."""
     overlapping_pairs: int
     """Pairs of blocks that have overlapped."""
+    broken_length: float
+    """Bonded length that has broken, of joints whose law has an energy of fracture (m)."""
+    broken_joints: int
+    """Joints whose last bond has broken."""
 
 
 class Event(NamedTuple):

@@ -1,8 +1,10 @@
 //! Joint laws: stiffness and strength of a joint, as pure functions of force, length and slip (theory §7).
 
 mod barton_bandis;
+mod softening;
 
 pub use barton_bandis::{Closure, Roughness};
+pub use softening::{Bond, Damaged, Softening};
 
 use crate::geometry::id;
 
@@ -47,6 +49,8 @@ pub struct JointLaw {
     pub crush: f64,
     /// Roughness of a Barton–Bandis joint; its `friction` is tan φr, and it has neither cohesion nor tension.
     pub roughness: Option<Roughness>,
+    /// How the peak strength is lost, if not at once.
+    pub softening: Option<Softening>,
 }
 
 /// Forces (N/m) that a contact of some length can carry.
@@ -171,6 +175,26 @@ impl JointLaw {
             [self.residual_friction, self.residual_cohesion, self.residual_tension]
         };
         Limits::MohrCoulomb { friction, cohesion: cohesion * length, tension: tension * length, felt: 0.0 }
+    }
+
+    /// The bond of a contact whose faces lie along each other over a `length` (m), with springs (N/m per metre), damage
+    /// and slip (m) so far, where the strength of all joints is multiplied by a factor; none of joints that do not
+    /// soften.
+    pub fn bond(&self, stiffness: [f64; 2], length: f64, strength: f64, [damage, slip]: [f64; 2]) -> Option<Bond> {
+        let softening = self.softening?;
+        let scale = length * strength;
+        Some(Bond {
+            stiffness,
+            tension: self.tension * scale,
+            opening: softening.opening,
+            shear_energy: softening.shear_energy * scale,
+            shear: [
+                [self.friction * strength, self.cohesion * scale],
+                [self.residual_friction * strength, self.residual_cohesion * scale],
+            ],
+            damage,
+            slip,
+        })
     }
 
     /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness

@@ -6,7 +6,7 @@ use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::frame::right_of;
-use crate::contact::{Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
+use crate::contact::{BondHistory, Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
@@ -56,7 +56,11 @@ impl NarrowPhase<'_> {
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
         let Tributary { length, bonded, penalty, share, whole } = self.tributary(node, candidate);
-        let law = self.law(node, edge);
+        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law: self.law(node, edge) };
+        if self.softens {
+            bond = self.bond(candidate, bond);
+        }
+        let BondHistory { lengths: [length, bonded], law, .. } = bond;
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
@@ -88,12 +92,57 @@ impl NarrowPhase<'_> {
             gap,
             length,
             bonded,
-            mean_stress: 0.0,
+            past: bond.damage,
             law,
             torn: false,
             fresh: candidate.held.is_none(),
             delayed: false,
         };
+    }
+
+    /// The bond of a contact that would have a law and lengths (m), tributary and bonded: a bond that holds is as long
+    /// as it was. Of a contact without one the bonded length is what the law gives it.
+    #[cold]
+    #[inline(never)]
+    fn bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
+        let holds = |known: u32| self.rule.history[known as usize].intact;
+        let held = candidate.held.filter(|&known| holds(known)).and_then(|known| self.bonds.get(known as usize));
+        if let Some(bond) = held.filter(|bond| bond.lengths[0] > 0.0) {
+            return *bond;
+        }
+        if self.first { self.first_bond(candidate, new) } else { new }
+    }
+
+    /// The bond of a contact in the first step: where its faces lie on joints of several laws, the part of its length
+    /// that lies on the bond is bonded.
+    fn first_bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
+        let (boundary, node) = (self.rule.boundary, candidate.node);
+        let along = |point: EdgeId| self.rule.frames.position(point).dot(&candidate.tangent);
+        let before = boundary.node_before[candidate.edge];
+        let [from, to] = [before, boundary.nodes.next[before]].map(|node| along(boundary.nodes.point[node]));
+        let ends = [boundary.nodes.previous[node], node, boundary.nodes.next[node]].map(|n| boundary.nodes.point[n]);
+        let (mut all, mut soft, mut law) = (0.0, 0.0, None);
+        for pair in ends.windows(2) {
+            let mut edge = pair[0];
+            while edge != pair[1] {
+                let next = boundary.after(edge);
+                let over = along(edge).min(to) - along(next).max(from);
+                let own = boundary.trace[edge].map_or(new.law, |trace| self.trace_law[trace]);
+                if over > 0.0 {
+                    all += over;
+                    if self.laws[own].softening.is_some() {
+                        soft += over;
+                        law = law.or(Some(own));
+                    }
+                }
+                edge = next;
+            }
+        }
+        if all == 0.0 {
+            return new;
+        }
+        let Some(law) = law else { return BondHistory { lengths: [new.lengths[0], 0.0], ..new } };
+        BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, ..new }
     }
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch

@@ -16,7 +16,7 @@ use crate::mechanics::StressField;
 use near_sides::NearRun;
 use prefilter::Nearest;
 
-use super::{ContactCandidate, JointLaw, LawId, NearPair, VertexEdge, VertexRule};
+use super::{BondHistory, ContactCandidate, JointLaw, LawId, NearPair, VertexEdge, VertexRule};
 
 pub use near_sides::NearSides;
 pub use prefilter::prefiltered;
@@ -50,6 +50,10 @@ pub struct NarrowPhase<'a> {
     pub impacts: Option<&'a [f64]>,
     /// Whether contacts are those of the untouched model: joints are intact and pre-stressed.
     pub first: bool,
+    /// Whether joints of the laws soften.
+    pub softens: bool,
+    /// Bonds of the contacts of the last step; empty in a model whose joints do not soften.
+    pub bonds: &'a [BondHistory],
     /// Stress xx, yy, xy (Pa) before the first step, by position.
     pub in_situ: Option<&'a StressField>,
     /// Whether to keep to the calling thread.

@@ -7,7 +7,7 @@
 
 use enmm_lanes::First;
 
-use crate::contact::{Closure, ContactSetting, Pair, SoftSpring, Spring, VertexEdge};
+use crate::contact::{Bond, Closure, ContactSetting, Pair, SoftSpring, Spring, VertexEdge};
 use crate::cover;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
@@ -27,6 +27,8 @@ struct Equation {
     answers: [SoftSpring; 2],
     /// Curve of the normal spring.
     closure: Closure,
+    /// Bond that softens.
+    bond: Option<Bond>,
 }
 
 impl Equation {
@@ -40,22 +42,26 @@ impl Equation {
         let last = contact.relative(setting.boundary, approach.velocity).map(|v| v * approach.dt_last);
         let inverse: f64 = pair.blocks.map(|block| masses.inverse_total[block]).iter().sum();
         let penalty = setting.laws[contact.law].penalty;
+        let bond = contact.bond(setting);
         let spring = |axis: usize| {
             let (stiffness, compliance, speed) = (contact.stiffness[axis], compliance[axis], speed[axis]);
             let SolverOptions { dt, kick, .. } = *options;
             let own = Spring { stiffness, compliance, approach: speed, forward: approach.forward, lag: 0.0, dt, kick };
+            if bond.is_some() {
+                return Spring { forward: 1.0, ..own };
+            }
             let is_centred = approach.damping.is_some() && !penalty[axis];
             if is_centred { own.centred(First, last[axis], approach.bouncing(First, inverse)) } else { own }
         };
         let normal = spring(0);
         let closure = contact.closure(setting);
-        let closing = if closure.is_curved() {
+        let closing = if closure.is_curved() || bond.is_some() {
             Spring { stiffness: 1.0, ..normal }.response(-contact.gap)
         } else {
             normal.response(-contact.stiffness[0] * contact.gap)
         };
         let answers = [closing, spring(1).response(contact.shear_stored())];
-        Self { pair, arms, z: [0, 1].map(|k| pair.z(k, masses)), answers, closure }
+        Self { pair, arms, z: [0, 1].map(|k| pair.z(k, masses)), answers, closure, bond }
     }
 }
 
@@ -179,6 +185,13 @@ fn asked(contact: &VertexEdge, equation: &Equation, u: Vector) -> [f64; 2] {
         rest - rate * along[axis] + kept * force[axis]
     });
     let [kept_normal, kept_shear] = [equation.answers[0].kept, equation.answers[1].kept];
+    if let Some(bond) = equation.bond {
+        let pull = bond.normal(normal, kept_normal);
+        let trial = shear / (1.0 + kept_shear);
+        let ease = (1.0 + kept_shear) / contact.stiffness[1];
+        let limit = bond.shear(pull, trial.abs(), ease, bond.damage_at(kept_normal * pull - normal));
+        return [pull, trial.clamp(-limit, limit)];
+    }
     // Of a joint that closes on a curve the sum above is the closure from which the force follows (Eq. 35).
     let curve = equation.closure;
     let normal = if curve.is_curved() { curve.solve(normal, kept_normal) } else { normal / (1.0 + kept_normal) };

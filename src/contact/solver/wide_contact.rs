@@ -50,9 +50,10 @@ struct Start {
     stiffness: [F64x8; 2],
     stored: [F64x8; 2],
     /// Lanes, a bit each, whose spring is the joint's own in a dynamic stage, whose spring follows a curve (never the
-    /// shear spring), and whose points lie in one block.
+    /// shear spring), whose joint is a bond that softens, and whose points lie in one block.
     own: [u8; 2],
     closing: [u8; 2],
+    bonded: u8,
     joined: u8,
 }
 
@@ -60,14 +61,16 @@ impl Start {
     #[inline(always)]
     fn take(&mut self, lane: usize, contact: &VertexEdge, approach: &Approach) {
         let VertexEdge { stiffness, gap, .. } = contact;
-        let closes_on_a_curve = contact.closure(&approach.setting).is_curved();
+        let is_bond = contact.bond(&approach.setting).is_some();
+        let closes_on_a_curve = is_bond || contact.closure(&approach.setting).is_curved();
         let stored = [if closes_on_a_curve { -gap } else { -stiffness[0] * gap }, contact.shear_stored()];
         for k in 0..2 {
             self.stiffness[k][lane] = stiffness[k];
             self.stored[k][lane] = stored[k];
         }
         self.closing[0] |= u8::from(closes_on_a_curve) << lane;
-        if approach.damping.is_some() {
+        self.bonded |= u8::from(is_bond) << lane;
+        if approach.damping.is_some() && !is_bond {
             let penalty = approach.setting.laws[contact.law].penalty;
             (0..2).for_each(|k| self.own[k] |= u8::from(!penalty[k]) << lane);
         }
@@ -195,7 +198,11 @@ impl WideContact {
             Limits::BartonBandis { .. } => (0.0, 0.0, 0.0, 0.0),
         };
         (self.friction[lane], self.cohesion[lane], self.felt[lane]) = (friction, cohesion, felt);
-        self.open[lane] = if tension > 0.0 { (-tension).next_down() } else { 0.0 };
+        self.open[lane] = match (start.bonded >> lane & 1 != 0, tension > 0.0) {
+            (true, _) => f64::NEG_INFINITY,
+            (false, true) => (-tension).next_down(),
+            (false, false) => 0.0,
+        };
         self.curved |= limits.is_curved() | (start.closing[0] != 0);
     }
 
@@ -242,6 +249,10 @@ impl WideContact {
                 let centred = spring.centred(lanes, last[k] * lanes.splat(motion.dt_last), bouncing);
                 spring.forward = lanes.select(start.own[k], centred.forward, forward);
                 spring.lag = lanes.select(start.own[k], centred.lag, lag);
+            }
+            if start.bonded != 0 {
+                // A bond has its force at the end of the step, and no dashpot, which would outlast its strength.
+                spring.forward = lanes.select(start.bonded, one, spring.forward);
             }
             let closing = start.closing[k];
             spring.stiffness = lanes.select(closing, one, stiffness);
@@ -311,11 +322,12 @@ impl WideContact {
         let zero = lanes.splat(0.0);
         let mut limit = lanes.max(normal * lanes.load(&self.friction) + lanes.load(&self.cohesion), zero);
         if self.curved {
-            let (mut asked, mut limits) = ([0.0; LANES], [0.0; LANES]);
-            lanes.store(normal, &mut asked);
+            let (mut asked, mut limits) = ([[0.0; LANES]; 2], [0.0; LANES]);
+            lanes.store(normal, &mut asked[0]);
+            lanes.store(shear, &mut asked[1]);
             lanes.store(limit, &mut limits);
             self.follow(from, &mut asked, &mut limits);
-            (normal, limit) = (lanes.load(&asked), lanes.load(&limits));
+            (normal, limit) = (lanes.load(&asked[0]), lanes.load(&limits));
         }
         // No branch depends on which contacts are closed, slip or change: it would be known too late.
         let open = lanes.load(&self.open);
@@ -349,9 +361,18 @@ impl WideContact {
     /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve.
     #[cold]
     #[inline(never)]
-    fn follow(&self, from: &ContactView, asked: &mut F64x8, limits: &mut F64x8) {
+    fn follow(&self, from: &ContactView, [asked, shear]: &mut [F64x8; 2], limits: &mut F64x8) {
         for (lane, &contact) in self.of(from.order).iter().enumerate() {
             let (contact, setting) = (&from.contacts[contact as usize], &from.approach.setting);
+            if let Some(bond) = contact.bond(setting) {
+                let (closes, takes) = (asked[lane], self.answers[0].kept[lane]);
+                asked[lane] = bond.normal(closes, takes);
+                // Of the shear spring the answer is the force, of which `kept` is the share that it takes from itself.
+                let ease = 1.0 / (contact.stiffness[1] * (1.0 - self.answers[1].kept[lane]));
+                let opened = bond.damage_at(takes * asked[lane] - closes);
+                limits[lane] = bond.shear(asked[lane], shear[lane].abs(), ease, opened);
+                continue;
+            }
             let (closure, law) = (contact.closure(setting), contact.limits(setting));
             if closure.is_curved() {
                 asked[lane] = closure.solve(asked[lane], self.answers[0].kept[lane]);

@@ -1,10 +1,12 @@
 //! Ends of the joints of a case that almost meet a line, with names: which were joined to it, and which rock holds.
 
+use crate::contact::LawId;
 use crate::geometry::ends::{EndChange, EndDistances, EndLine, NearEnd, join_ends};
 use crate::geometry::{GeometryError, Point, TraceId};
 use crate::model::case::{Case, JointSet};
 
 use super::joints::Joints;
+use super::law_of;
 
 /// Ends that one message names.
 const NAMED: usize = 5;
@@ -41,8 +43,12 @@ pub(super) fn join(
     let join = case.domain.extend_ends.unwrap_or(JOIN_RATIO * case.mesh.size);
     let distances = EndDistances { tolerance, join, list: join.max(case.mesh.size) };
     let mut lines: Vec<&mut Vec<Point>> = joints.traces.iter_mut().map(|(points, _)| points).collect();
-    let ends = join_ends(outlines, &mut lines, &distances, is_rock)?;
+    let mut ends = join_ends(outlines, &mut lines, &distances, is_rock)?;
     let is_listed = |end: &&NearEnd| end.change != EndChange::Kept || !ends_on_purpose(case, joints, end.trace);
+    ends.retain(|end| is_listed(&end));
+    if let Some(law) = case.domain.bridge_law.as_ref().and_then(|name| law_of(case, name)) {
+        ends.iter_mut().for_each(|end| bridge(end, law, joints));
+    }
     let named = |end: &NearEnd| TraceEnd {
         name: name(joints, end.trace),
         place: end.place,
@@ -53,7 +59,21 @@ pub(super) fn join(
         },
         change: end.change,
     };
-    Ok(ends.iter().filter(is_listed).map(named).collect())
+    Ok(ends.iter().map(named).collect())
+}
+
+/// Leads a rock bridge of a law from an end that stays in the rock to its line.
+fn bridge(end: &mut NearEnd, law: LawId, joints: &mut Joints) {
+    if end.change != EndChange::Kept {
+        return;
+    }
+    end.change = EndChange::Bridged;
+    let back = [end.meets, end.place];
+    // Of two ends that face each other the first one has it already.
+    if joints.bridges.iter().all(|&bridge| joints.traces[bridge].0 != back) {
+        joints.bridges.push(joints.traces.len());
+        joints.traces.push((vec![end.place, end.meets], law));
+    }
 }
 
 /// The set of a trace, unless it is a joint of the case or a piece that a region with another law has parted.
@@ -67,16 +87,20 @@ fn ends_on_purpose(case: &Case, joints: &Joints, trace: TraceId) -> bool {
 }
 
 fn name(joints: &Joints, trace: TraceId) -> String {
+    if let Ok(bridge) = joints.bridges.binary_search(&trace.index()) {
+        return format!("rock bridge {bridge}");
+    }
     set_of(joints, trace).map_or_else(|| format!("joint[{}]", trace.index()), |set| format!("joint_set[{set}]"))
 }
 
 /// The ends that were joined to a line, and those that rock holds, in a line of text each.
 pub(super) fn notes(ends: &[TraceEnd]) -> impl Iterator<Item = String> {
-    joined(ends).into_iter().chain(kept(ends))
+    joined(ends).into_iter().chain(bridged(ends)).chain(kept(ends))
 }
 
 fn joined(ends: &[TraceEnd]) -> Option<String> {
-    let joined: Vec<&TraceEnd> = ends.iter().filter(|end| end.change != EndChange::Kept).collect();
+    let is_joined = |end: &&TraceEnd| matches!(end.change, EndChange::Extended | EndChange::Trimmed);
+    let joined: Vec<&TraceEnd> = ends.iter().filter(is_joined).collect();
     let tell = |end: &&TraceEnd| {
         let verb = if end.change == EndChange::Extended { "extended" } else { "trimmed" };
         let TraceEnd { name, place, gap, line, .. } = end;
@@ -96,6 +120,23 @@ fn joined(ends: &[TraceEnd]) -> Option<String> {
     })
 }
 
+fn bridged(ends: &[TraceEnd]) -> Option<String> {
+    let bridged: Vec<&TraceEnd> = ends.iter().filter(|end| end.change == EndChange::Bridged).collect();
+    let place = |end: &&TraceEnd| {
+        let TraceEnd { name, place, gap, line, .. } = end;
+        format!("{name} at ({:.6}, {:.6}) m by {gap:.3} m to {line}", place.x, place.y)
+    };
+    let ends = if bridged.len() == 1 {
+        "trace end that stops in the rock has"
+    } else {
+        "trace ends that stop in the rock have"
+    };
+    (!bridged.is_empty()).then(|| {
+        let places = list(&bridged, place);
+        format!("{} {ends} a rock bridge of domain.bridge_law ahead: {places}", bridged.len())
+    })
+}
+
 fn kept(ends: &[TraceEnd]) -> Option<String> {
     let kept: Vec<&TraceEnd> = ends.iter().filter(|end| end.change == EndChange::Kept).collect();
     let tell = |end: &&TraceEnd| {
@@ -107,7 +148,7 @@ fn kept(ends: &[TraceEnd]) -> Option<String> {
     (!kept.is_empty()).then(|| {
         format!(
             "{}: intact rock holds {it}, and the model cannot break it; draw joints that are to part the rock up to \
-             the line, or raise domain.extend_ends",
+             the line, raise domain.extend_ends, or give domain.bridge_law for rock that can break there",
             list(&kept, tell)
         )
     })

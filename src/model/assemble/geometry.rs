@@ -38,13 +38,13 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     demand.check_sets()?;
     let mut joints = joints(case, low, high)?;
     demand.check_traces(&joints.traces)?;
-    let user_traces = joints.traces.len();
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
     let is_rock = |position| loops.hold(position);
     demand.check_dense(&joints.traces, tolerance, is_rock)?;
     demand.check_crossings(&joints.traces, tolerance, is_rock)?;
     let ends = ends::join(case, &mut joints, &loops.sides(), tolerance, is_rock);
     let ends = ends.map_err(|error| demand.explain(&error))?;
+    let user_traces = joints.traces.len();
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), joints.default_law));

@@ -1,6 +1,7 @@
 //! From the case to the model: arrangement, covers, masses, boundary, fixities, loads.
 
 mod bolts;
+mod bonds;
 mod ends;
 mod geometry;
 mod integrators;
@@ -14,7 +15,7 @@ mod slips;
 mod stage;
 mod warnings;
 
-use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resistance, Roughness, Support};
+use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resistance, Roughness, Softening, Support};
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
@@ -70,7 +71,8 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     let geometry::Plane { mesh, mut arrangement, joints, ends, crumbs } = geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
-    let notes = [case.reader_notes.clone(), warnings::notes(&noding, &ends, &crumbs)].concat();
+    let mut notes = [case.reader_notes.clone(), warnings::notes(&noding, &ends, &crumbs)].concat();
+    notes.extend(bonds::note(&joints));
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
@@ -87,6 +89,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     warnings.extend(rock::overstressed(case, &model));
     warnings.extend(rock::coarse(case));
     warnings.extend(bolt_warnings);
+    warnings.extend(bonds::warnings(case, &model, &joints));
     warnings.extend(quiet::warning(case));
     warnings.extend(quiet::ringing(case));
     warnings.extend(warnings::of_values(case, &model, &positions));
@@ -251,6 +254,7 @@ fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
 fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
     let tangent = |degrees: f64| libm::tan(degrees.to_radians());
     let normal_stiffness = law.normal_stiffness.unwrap_or(stiffness);
+    let opening = law.tension_energy.map_or(0.0, |energy| 2.0 * energy / law.tension);
     JointLaw {
         normal_stiffness,
         shear_stiffness: law.shear_stiffness.unwrap_or(stiffness * shear_ratio),
@@ -273,6 +277,7 @@ fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw
                 jcs: law.jcs.unwrap_or_default(),
             }),
         },
+        softening: law.softens().then(|| Softening { opening, shear_energy: law.shear_energy.unwrap_or_default() }),
     }
 }
 
@@ -413,6 +418,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         displacement: vec![Vector::zeros(); covers],
         velocity,
         contacts: Vec::new(),
+        bonds: Vec::new(),
         neighbours: Default::default(),
         support_force: model.supports.iter().map(|s| s.preload).collect(),
         support_rest: vec![0.0; model.supports.len()],

@@ -5,6 +5,7 @@ use crate::geometry::Vector;
 use crate::mechanics::{self, MassMatrix};
 use crate::state::{ChunkSums, Ledger, Model, MotionBuffers, State, SweepBuffers, Workspace};
 
+use super::bonds::{has_bonds, settle_bonds};
 use super::chunk_runs::{self, ChunkSlices};
 use super::columns::move_columns;
 use super::finish::Finish;
@@ -23,6 +24,10 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     settle_contacts(setting, step, velocities, contacts, &mut state.contacts, outcomes, counters);
     settle_supports(&supports.rows, &mut state.support_force);
     let mut works = contact_works(model, step.kick, velocities, outcomes, supports);
+    if has_bonds(&state.laws) {
+        let (histories, bonds) = (&mut state.contacts, &mut state.bonds);
+        works.add_works(&settle_bonds(setting, step, velocities[1], contacts, histories, bonds, counters), 1.0);
+    }
     works.damping = totals.damping;
     let forces = (extra(model, state, step), totals.row_sum);
     works.external_work += external_work(step.kick, velocities, forces, &workspace.load_force);

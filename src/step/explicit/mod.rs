@@ -22,7 +22,7 @@ use crate::state::{Counters, Model, State, Workspace};
 use super::contacts::{self, Reach};
 use super::friction::delay_friction;
 use super::integrator::{Integrator, StepOutcome};
-use super::{Regime, StepInterval, StepReport, Substep, applied, guard, quiet, ramp, records, report, settle};
+use super::{Regime, StepInterval, StepReport, Substep, applied, bonds, guard, quiet, ramp, records, report, settle};
 
 use columns::kick_columns;
 use commit::commit;

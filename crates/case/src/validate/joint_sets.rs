@@ -47,6 +47,22 @@ pub fn validate_set(key: &Key, set: &JointSet) -> Check {
     set.region.as_ref().map_or(Ok(()), |ring| region(&key.field("region"), ring))
 }
 
+/// Checks the rock bridges of a set.
+///
+/// # Errors
+/// Their law is none of the case, or the set has none.
+pub fn validate_bridges(key: &Key, set: &JointSet, laws: &Names) -> Check {
+    let Some(law) = &set.bridge_law else { return Ok(()) };
+    let key = key.field("bridge_law");
+    laws.must_hold(&key, law)?;
+    if set.trace_length.is_none() || set.gap == 0.0 {
+        let message =
+            format!("is {law:?}, but the traces have no gaps; add `trace_length` and `persistence`, or remove it");
+        return fail(&key, message);
+    }
+    Ok(())
+}
+
 /// Checks the keys that the distribution of angles needs, and those that it does not use.
 fn validate_angles(key: &Key, set: &JointSet) -> Check {
     let is_fisher = set.angle_distribution == AngleDistribution::Fisher;

@@ -2,7 +2,7 @@
 
 use super::checks::{Check, Range, fail, number, optional};
 use crate::key::Key;
-use crate::{JointLaw, JointLawKind, LawChange};
+use crate::{Case, Integrator, JointLaw, JointLawKind, LawChange};
 
 /// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
 const RESIDUAL: Range = Range::from(0.0).to(70.0);
@@ -35,6 +35,8 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
         ("residual_friction_deg", law.residual_friction_deg.is_some()),
         ("residual_cohesion", law.residual_cohesion.is_some()),
         ("residual_tension", law.residual_tension != 0.0),
+        ("tension_energy", law.tension_energy.is_some()),
+        ("shear_energy", law.shear_energy.is_some()),
     ];
     if let Some((name, _)) = strengths.iter().find(|(_, given)| *given) {
         let message = "a law of kind barton_bandis has no such strength: `friction_deg`, `jrc` and `jcs` give it; \
@@ -62,6 +64,89 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
         return fail(&key.field("dilation_deg"), message);
     }
     Ok(())
+}
+
+/// Energies of fracture (J/m²): glass has some 1, rock 10 to 1000 in tension and some 1e5 in shear.
+const ENERGY: Range = Range::above(0.0).to(1e9);
+
+/// Checks that energies of fracture have a strength to take.
+///
+/// # Errors
+/// An energy that cannot be used, or whose strength the law lacks.
+pub fn validate_energies(key: &Key, law: &JointLaw) -> Check {
+    optional(key, "tension_energy", law.tension_energy, ENERGY, "J/m²", "leave it out for a brittle joint")?;
+    optional(key, "shear_energy", law.shear_energy, ENERGY, "J/m²", "leave it out for a brittle joint")?;
+    if let Some(energy) = law.tension_energy.filter(|_| law.tension == 0.0) {
+        let message = format!("is {energy} J/m², but `tension` is 0 Pa, so that nothing softens; add `tension`");
+        return fail(&key.field("tension_energy"), message);
+    }
+    if law.softens() && law.residual_tension > 0.0 {
+        let message = format!(
+            "is {} Pa, but a joint that breaks with an energy of fracture keeps no tensile strength; remove it",
+            law.residual_tension
+        );
+        return fail(&key.field("residual_tension"), message);
+    }
+    let Some(energy) = law.shear_energy else { return Ok(()) };
+    let (friction, cohesion) = (law.friction_deg, law.cohesion);
+    let residual = [law.residual_friction_deg.unwrap_or(friction), law.residual_cohesion.unwrap_or(cohesion)];
+    let names = [("residual_friction_deg", friction, "degrees"), ("residual_cohesion", cohesion, "Pa")];
+    for ((name, peak, unit), residual) in names.into_iter().zip(residual) {
+        if residual > peak {
+            let message = format!(
+                "is {residual} {unit}, more than the peak of {peak} {unit}: a joint with `shear_energy` \
+                 softens; lower it"
+            );
+            return fail(&key.field(name), message);
+        }
+    }
+    if residual == [friction, cohesion] {
+        let message = format!(
+            "is {energy} J/m², but the residual strength is the peak one, so that nothing softens; add \
+             `residual_cohesion` or `residual_friction_deg`"
+        );
+        return fail(&key.field("shear_energy"), message);
+    }
+    Ok(())
+}
+
+/// Checks that the integrator knows what the law has.
+///
+/// # Errors
+/// The implicit one is asked for a law with an energy of fracture.
+pub fn validate_integrator(key: &Key, law: &JointLaw, integrator: Integrator) -> Check {
+    if integrator == Integrator::Explicit || !law.softens() {
+        return Ok(());
+    }
+    let name = if law.tension_energy.is_some() { "tension_energy" } else { "shear_energy" };
+    let message = "the implicit integrator knows no energy of fracture; remove it, or set \
+                   `solver.integrator = \"explicit\"`";
+    fail(&key.field(name), message)
+}
+
+/// Checks that a stage changes no law with an energy of fracture: what is damaged belongs to its strength.
+///
+/// # Errors
+/// It does.
+pub fn validate_soft_change(key: &Key, change: &LawChange) -> Check {
+    let message = format!(
+        "changes {:?}, whose strength falls with an energy of fracture; let the joint break, or remove this",
+        change.law
+    );
+    fail(key, message)
+}
+
+/// Checks that a stage switches no law with an energy of fracture, which its bonds keep until they break.
+///
+/// # Errors
+/// It does.
+pub fn validate_soft_switch(key: &Key, case: &Case, from: &str) -> Check {
+    if !case.joint_laws.get(from).is_some_and(JointLaw::softens) {
+        return Ok(());
+    }
+    let message =
+        format!("is {from:?}, whose strength falls with an energy of fracture; let the joint break, or remove this");
+    fail(key, message)
 }
 
 /// Checks what a stage changes of a Barton–Bandis law: its residual angle only.

@@ -57,7 +57,9 @@ impl Case {
         self.validate_joints(&root)?;
         self.validate_rocks(&root.field("rock"))?;
         for (name, law) in &self.joint_laws {
-            joint_law(&root.field("joint_law").field(name), law)?;
+            let key = root.field("joint_law").field(name);
+            joint_law(&key, law)?;
+            joints::validate_integrator(&key, law, self.solver.integrator)?;
         }
         joint_sets::validate_law_regions(&root.field("law_region"), self)?;
         gravity(&root.field("gravity"), &self.gravity)?;
@@ -117,6 +119,15 @@ impl Case {
             joint_sets::validate_set(&key, set)?;
             joint_sets::validate_end(&key, self, i)?;
             self.validate_law_of_joint(&laws, &key, set.law.as_deref())?;
+            joint_sets::validate_bridges(&key, set, &laws)?;
+        }
+        for (i, bridge) in self.bridges.iter().enumerate() {
+            let key = root.field("bridge").index(i);
+            points(&key.field("points"), &bridge.points, 2, "a rock bridge")?;
+            laws.must_hold(&key.field("law"), &bridge.law)?;
+        }
+        if let Some(law) = &self.domain.bridge_law {
+            laws.must_hold(&root.field("domain").field("bridge_law"), law)?;
         }
         if self.domain.islands.is_empty() {
             return Ok(());
@@ -250,7 +261,8 @@ fn joint_law(key: &Key, law: &JointLaw) -> Check {
     number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
     optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for 0.05 m")?;
     optional(key, "crush", law.crush, Range::from(1e3).to(1e12), "Pa", "the strength of the rock, 1e6 to 3e8")?;
-    joints::validate_kind(key, law)
+    joints::validate_kind(key, law)?;
+    joints::validate_energies(key, law)
 }
 
 fn gravity(key: &Key, gravity: &Gravity) -> Check {

@@ -3,7 +3,7 @@
 use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
 use super::{joints, ports};
 use crate::key::Key;
-use crate::{Case, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
+use crate::{Case, JointLaw, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
 
 /// Checks the stages of a case.
 ///
@@ -75,11 +75,15 @@ fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {
         if case.joint_laws.get(&change.law).is_some_and(|law| law.kind == JointLawKind::BartonBandis) {
             joints::validate_rough_change(&key, change)?;
         }
+        if case.joint_laws.get(&change.law).is_some_and(JointLaw::softens) {
+            joints::validate_soft_change(&key, change)?;
+        }
     }
     for (i, LawSwitch { from, to }) in stage.law_switches.iter().enumerate() {
         let key = key.field("switch_law").index(i);
         laws.must_hold(&key.field("from"), from)?;
         laws.must_hold(&key.field("to"), to)?;
+        joints::validate_soft_switch(&key.field("from"), case, from)?;
         if from == to {
             return fail(&key.field("to"), format!("is {to:?}, the law to replace; name another law or remove it"));
         }

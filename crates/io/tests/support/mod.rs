@@ -38,6 +38,7 @@ spacing_sd = 0.1
 trace_length = 4.0
 trace_length_sd = 1.0
 gap = 0.5
+bridge_law = "rough"
 seed = 7
 region = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0]]
 
@@ -70,6 +71,18 @@ residual_tension = 0.0
 dilation_deg = 5.0
 dilation_slip = 0.01
 crush = 60e6
+
+[joint_law.bond]
+friction_deg = 45.0
+cohesion = 2e6
+residual_cohesion = 1.0
+tension = 1e6
+tension_energy = 100.0
+shear_energy = 1e4
+
+[[bridge]]
+points = [[4.0, 1.0], [4.5, 1.0]]
+law = "rough"
 
 [gravity]
 x = 0.0

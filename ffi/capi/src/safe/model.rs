@@ -236,7 +236,9 @@ impl Model {
         let mesh_size = self.inner.case().mesh.size;
         let level = match event.kind {
             EventKind::Overlapped => enmm_log_level::ENMM_LOG_WARNING,
-            EventKind::Detached | EventKind::Slipped | EventKind::Failed => enmm_log_level::ENMM_LOG_INFO,
+            EventKind::Detached | EventKind::Slipped | EventKind::Failed | EventKind::Broken => {
+                enmm_log_level::ENMM_LOG_INFO
+            }
         };
         self.log.write(level, || sentence(event, mesh_size));
     }
@@ -285,6 +287,7 @@ fn sentence(event: &Event, mesh_size: f64) -> String {
         EventKind::Detached => format!("t = {time} s: block {subject} lost its last contact"),
         EventKind::Slipped if subject == u32::MAX => format!("t = {time} s: a contact away from joints slipped"),
         EventKind::Slipped => format!("t = {time} s: joint {subject} slipped"),
+        EventKind::Broken => format!("t = {time} s: the last bond of joint {subject} broke"),
         EventKind::Failed => format!("t = {time} s: block {subject} moved beyond the failure displacement"),
         EventKind::Overlapped => {
             format!("t = {time} s: {}: results about them are wrong from here on", event.overlap_text(mesh_size))

@@ -67,6 +67,7 @@ impl Model {
                 EventKind::Slipped => enmm_event_kind::ENMM_EVENT_SLIPPED,
                 EventKind::Failed => enmm_event_kind::ENMM_EVENT_FAILED,
                 EventKind::Overlapped => enmm_event_kind::ENMM_EVENT_OVERLAPPED,
+                EventKind::Broken => enmm_event_kind::ENMM_EVENT_BROKEN,
             },
             subject: event.subject,
             time: event.time,
@@ -233,6 +234,7 @@ fn energies(ledger: &Ledger) -> enmm_energies {
         bolt_stored: ledger.bolt_stored,
         bolt_installed: ledger.bolt_installed,
         bolt_dissipation: ledger.bolt_dissipation(),
+        fracture: ledger.fracture,
     }
 }
 
@@ -253,6 +255,8 @@ fn totals(totals: &Totals) -> enmm_totals {
         failed_blocks: totals.failed_blocks,
         overlap_max: totals.overlap_max,
         overlapping_pairs: totals.overlapping_pairs,
+        broken_length: totals.broken_length,
+        broken_joints: totals.broken_joints,
     }
 }
 

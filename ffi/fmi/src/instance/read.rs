@@ -177,6 +177,7 @@ fn kind_number(kind: EventKind) -> f64 {
         EventKind::Slipped => 2.0,
         EventKind::Failed => 3.0,
         EventKind::Overlapped => 4.0,
+        EventKind::Broken => 5.0,
     }
 }
 

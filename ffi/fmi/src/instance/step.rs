@@ -144,7 +144,9 @@ impl Instance {
     pub(super) fn log_event(&mut self, event: &Event) {
         let (status, category) = match event.kind {
             EventKind::Overlapped => (Status::Warning, Category::Warning),
-            EventKind::Detached | EventKind::Slipped | EventKind::Failed => (Status::Ok, Category::Events),
+            EventKind::Detached | EventKind::Slipped | EventKind::Failed | EventKind::Broken => {
+                (Status::Ok, Category::Events)
+            }
         };
         self.log(status, category, event_text(event, self.experiment.start, self.model.case().mesh.size));
     }
@@ -199,6 +201,7 @@ fn event_text(event: &Event, start: f64, mesh_size: f64) -> String {
         EventKind::Detached => format!("block {} detached", event.subject),
         EventKind::Slipped if event.subject == u32::MAX => "a contact away from joints slipped".to_owned(),
         EventKind::Slipped => format!("joint {} slipped", event.subject),
+        EventKind::Broken => format!("the last bond of joint {} broke", event.subject),
         EventKind::Failed => format!("block {} failed", event.subject),
         EventKind::Overlapped => event.overlap_text(mesh_size),
     };

@@ -1,0 +1,69 @@
+//! Bonds that soften: what the user should know of their lengths and of the mesh that they break in (theory §7).
+
+use crate::contact::{JointLaw, LawId};
+use crate::mechanics::Elasticity;
+use crate::model::case::Case;
+use crate::state::Model;
+
+use super::joints::Joints;
+
+/// E/(1 − ν²) (Pa) of the stiffest rock.
+fn plane_modulus(model: &Model) -> f64 {
+    let modulus = |rock: &Elasticity| 4.0 * rock.mu * (rock.lambda + rock.mu) / (rock.lambda + 2.0 * rock.mu);
+    model.rocks.iter().map(modulus).fold(0.0, f64::max)
+}
+
+/// How many rock bridges there are, and how long they are in all.
+pub(super) fn note(joints: &Joints) -> Option<String> {
+    let lines = joints.bridges.iter().map(|&bridge| &joints.traces[bridge].0);
+    let length: f64 = lines.flat_map(|line| line.windows(2)).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let count = joints.bridges.len();
+    let bridges = if count == 1 { "rock bridge" } else { "rock bridges" };
+    (count > 0).then(|| format!("{count} {bridges} of {length:.3} m can break; rock beside them is elastic"))
+}
+
+/// Laws whose energy of fracture springs or mesh cannot follow, so that a bond breaks at once at its strength.
+pub(super) fn warnings(case: &Case, model: &Model, joints: &Joints) -> Vec<String> {
+    let used = |k: usize| joints.traces.iter().any(|(_, law)| *law == LawId::new(k));
+    let laws = case.joint_laws.keys().zip(&model.laws).enumerate();
+    laws.filter(|(k, _)| used(*k)).flat_map(|(_, (name, law))| of_law(name, law, model)).collect()
+}
+
+fn of_law(name: &str, law: &JointLaw, model: &Model) -> Vec<String> {
+    let Some(softening) = law.softening else { return Vec::new() };
+    let mut warnings = Vec::new();
+    let (strength, energy) = (law.tension, 0.5 * law.tension * softening.opening);
+    if energy > 0.0 {
+        let stiff = 0.5 * strength * strength / energy;
+        let (modulus, size) = (plane_modulus(model), model.covers.mesh.size);
+        let longest = modulus / stiff - modulus / law.normal_stiffness;
+        if law.normal_stiffness <= stiff {
+            warnings.push(format!(
+                "joint_law.{name}.tension_energy: snap-back: the joint's own stiffness of {:.3e} Pa/m gives back more \
+                 energy than {energy} J/m², so that it breaks at once at its strength; this ends at a \
+                 `normal_stiffness` above {stiff:.3e} Pa/m",
+                law.normal_stiffness
+            ));
+        } else if size > longest {
+            warnings.push(format!(
+                "joint_law.{name}.tension_energy: snap-back: rock of the length of an element, {size} m, gives back \
+                 more energy than {energy} J/m², so that the joint breaks at once at its strength; this ends at a \
+                 length of {longest:.3e} m, or above {:.3e} J/m²",
+                0.5 * strength * strength * (size / modulus + 1.0 / law.normal_stiffness)
+            ));
+        }
+    }
+    let drop = law.cohesion - law.residual_cohesion;
+    if softening.shear_energy > 0.0 && drop > 0.0 {
+        let stiff = 0.5 * drop * drop / softening.shear_energy;
+        if law.shear_stiffness <= stiff {
+            warnings.push(format!(
+                "joint_law.{name}.shear_energy: snap-back: the joint's own stiffness of {:.3e} Pa/m gives back more \
+                 energy than {} J/m², so that it loses its cohesion at once; this ends at a `shear_stiffness` above \
+                 {stiff:.3e} Pa/m",
+                law.shear_stiffness, softening.shear_energy
+            ));
+        }
+    }
+    warnings
+}
