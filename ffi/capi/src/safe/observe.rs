@@ -326,6 +326,7 @@ mod tests {
             support_work: 64.0,
             damping: 128.0,
             yielding: 256.0,
+            fracture: 32768.0,
             bolt_work: 512.0,
             bolt_stored: 1024.0,
             bolt_installed: 2048.0,
@@ -349,6 +350,8 @@ mod tests {
             failed_blocks: 11,
             overlap_max: 12.0,
             overlapping_pairs: 13,
+            broken_length: 14.0,
+            broken_joints: 15,
         };
         hold(&format!("{:?}", totals(&sums)), &TOTALS, &sums);
     }
