@@ -181,8 +181,9 @@ pub fn check_owner(folder: &Path, case_file: &str) -> io::Result<()> {
     }
 }
 
-/// The case file that a record names.
+/// The case file that a record names; what is no regular file is not waited for.
 fn owner(record: &Path) -> Option<String> {
+    record.metadata().ok().filter(fs::Metadata::is_file)?;
     let record: Value = serde_json::from_slice(&fs::read(record).ok()?).ok()?;
     Some(record["case_file"].as_str()?.to_owned())
 }
