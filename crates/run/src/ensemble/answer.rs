@@ -25,7 +25,7 @@ pub fn columns(output: EnsembleOutput) -> &'static [&'static str] {
 /// Works out one output of a sample on this thread: `sample` is the case with its values, and `hear` is called with
 /// each trial. None when the search was interrupted.
 ///
-/// Whether a sample fails is no output of one: it follows from several (see [`super::screen`]).
+/// Whether a sample fails is no output of one: it follows from several (see `screen.rs`).
 pub fn answer(
     sample: &LoadedCase,
     output: EnsembleOutput,
