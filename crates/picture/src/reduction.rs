@@ -23,7 +23,7 @@ use enmm_stability::strength_reduction::{FailingBlock, Reduction, Trial, Verdict
 /// Height (px) of the frame of the trials.
 const FRAME: f64 = 560.0;
 /// Room (px) above the frame of the trials for the names of its lines.
-const NAMES: f64 = 26.0;
+const NAMES: f64 = 72.0;
 /// Height (px) of the picture of the slope at most.
 const HEIGHT_MAX: f64 = 820.0;
 /// Rock that stands.
