@@ -652,5 +652,7 @@ def test_failing_samples_are_found_with_few_searches(ensemble, tmp_path):
     assert again.table["factor_estimate"].tolist() == found.table["factor_estimate"].tolist()
     first = ensemble.run(block(), variables, 400, "level_tops", store=store, interval=0.15)
     assert len(first) % 50 == 0 and len(first) < 400
+    with pytest.raises(ValueError, match="limit"):
+        ensemble.run(block(), variables, 80, "failure", limit=0.0)
     with pytest.raises(ValueError, match="interval"):
         ensemble.run(block(), variables, 80, "failure", interval=0.1, method="latin_hypercube")

@@ -5,7 +5,6 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use enmm::model::BuildStage;
-use enmm::model::case::EnsembleOutput;
 use enmm_run::{EnsembleProgress, Observer, RunProgress};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -164,17 +163,15 @@ impl Search {
 pub struct Count {
     bar: Option<ProgressBar>,
     quiet: bool,
-    told: Mutex<Told>,
+    shown: Mutex<Shown>,
 }
 
-/// What has been shown of an ensemble.
+/// Last line of an ensemble on the screen.
 #[derive(Default)]
-struct Told {
-    /// What is worked out now, since when, and how many samples were there then.
-    begun: Option<(EnsembleOutput, Instant, usize)>,
-    /// Time of the last line.
-    line: Option<Instant>,
-    /// The line on the bar, without the last trial.
+struct Shown {
+    /// When it was printed, where there is no bar.
+    printed: Option<Instant>,
+    /// The line, without the last trial.
     text: String,
 }
 
@@ -182,28 +179,25 @@ impl Count {
     /// Nothing when it is to be quiet.
     pub fn new(quiet: bool) -> Self {
         let bar = terminal_bar(quiet, 0, "{wide_bar} {msg}");
-        Self { bar, quiet, told: Mutex::default() }
+        Self { bar, quiet, shown: Mutex::default() }
     }
 
     /// Samples are done.
     pub fn tell(&self, progress: &EnsembleProgress) {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        let EnsembleProgress { output, done, wanted, .. } = *progress;
-        let is_new = told.begun.is_none_or(|(last, ..)| last != output);
-        if is_new {
-            told.begun = Some((output, Instant::now(), done));
-        }
-        let due = is_new || done == wanted || told.line.is_none_or(|last| last.elapsed() >= LINES);
-        told.text = line(progress, told.begun);
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let EnsembleProgress { stored, done, wanted, .. } = *progress;
+        let is_an_end = done == stored || done == wanted;
+        shown.text = line(progress);
         match &self.bar {
             Some(bar) => {
                 bar.set_length(wanted as u64);
                 bar.set_position(done as u64);
-                bar.set_message(told.text.clone());
+                bar.set_message(shown.text.clone());
             }
-            None if due && !self.quiet && wanted > 0 => {
-                told.line = Some(Instant::now());
-                drop(writeln!(std::io::stderr(), "{}", told.text));
+            None if self.quiet || wanted == 0 => {}
+            None if is_an_end || shown.printed.is_none_or(|last| last.elapsed() >= LINES) => {
+                shown.printed = Some(Instant::now());
+                drop(writeln!(std::io::stderr(), "{}", shown.text));
             }
             None => {}
         }
@@ -212,8 +206,8 @@ impl Count {
     /// A trial of a sample has ended.
     pub fn trial(&self, sample: usize, text: &str) {
         if let Some(bar) = &self.bar {
-            let told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-            bar.set_message(format!("{}; sample {sample}: {text}", told.text));
+            let shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+            bar.set_message(format!("{}; sample {sample}: {text}", shown.text));
         }
     }
 
@@ -226,10 +220,9 @@ impl Count {
 }
 
 /// How many samples are done, how many of them fail, which took longest, and how long the others will take.
-fn line(progress: &EnsembleProgress, begun: Option<(EnsembleOutput, Instant, usize)>) -> String {
-    let EnsembleProgress { output, done, wanted, answered, below, slowest } = *progress;
-    let (start, first) = begun.map_or((Instant::now(), done), |(_, start, first)| (start, first));
-    let rate = (done - first.min(done)) as f64 / start.elapsed().as_secs_f64().max(1e-9);
+fn line(progress: &EnsembleProgress) -> String {
+    let EnsembleProgress { output, begun, stored, done, wanted, answered, below, slowest } = *progress;
+    let rate = (done - stored) as f64 / begun.elapsed().as_secs_f64().max(1e-9);
     let mut line = format!("{done} of {wanted} samples ({})", output.name().replace('_', " "));
     if answered > 0 {
         line += &format!(", {below} below the limit ({:.3})", below as f64 / answered as f64);

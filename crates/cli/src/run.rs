@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
 /// Refuses a folder with results of another case, unless they may be replaced.
 ///
 /// # Errors
-/// What is there, and the remedy.
+/// The other case, and the remedy.
 pub fn check_folder(directory: &Path, loaded: &LoadedCase, force: bool) -> std::io::Result<()> {
     if force { Ok(()) } else { enmm_run::check_owner(directory, loaded.source.file()) }
 }

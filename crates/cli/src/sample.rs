@@ -67,7 +67,7 @@ pub struct Arguments {
     /// A value of that sample.
     #[arg(long, hide = true, value_name = "KEY=VALUE")]
     value: Vec<String>,
-    /// What to work out of it; default: what the case says.
+    /// Output to work out of it; default: that of the case.
     #[arg(long, hide = true, value_name = "OUTPUT", value_parser = output)]
     output_of: Option<EnsembleOutput>,
 }
@@ -154,7 +154,7 @@ fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -
     fail(message, status)
 }
 
-/// What a sample is asked for, by its name in a case.
+/// The output of a sample by its name in a case.
 fn output(name: &str) -> Result<EnsembleOutput, String> {
     serde_json::from_value(json!(name)).map_err(|error| error.to_string())
 }

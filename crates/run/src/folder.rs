@@ -165,10 +165,10 @@ const RECORDS: [&str; 3] = ["ensemble.json", "fos.json", "summary.json"];
 /// Refuses a folder that holds results of another case than the one of a file.
 ///
 /// # Errors
-/// What is there, and the remedy.
+/// The other case, and the remedy.
 pub fn check_owner(folder: &Path, case_file: &str) -> io::Result<()> {
     let owners = RECORDS.iter().filter_map(|name| owner(&folder.join(name)));
-    match owners.into_iter().find(|owner| !is_same_file(owner, case_file)) {
+    match owners.into_iter().find(|owner| !is_one_case(owner, case_file)) {
         None => Ok(()),
         Some(other) => Err(io::Error::new(
             io::ErrorKind::AlreadyExists,
@@ -190,12 +190,8 @@ fn owner(record: &Path) -> Option<String> {
 
 /// Whether two paths name one file; of one that is not to be found, as one that was given from elsewhere, the name
 /// decides.
-fn is_same_file(a: &str, b: &str) -> bool {
-    let [a, b] = [a, b].map(Path::new);
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a.file_name() == b.file_name(),
-    }
+fn is_one_case(a: &str, b: &str) -> bool {
+    same_file::is_same_file(a, b).unwrap_or_else(|_| Path::new(a).file_name() == Path::new(b).file_name())
 }
 
 /// Whether a path in a folder of results is the name of a result.

@@ -2,7 +2,7 @@
 
 use super::checks::{Check, Range, fail, number, whole};
 use crate::key::{Key, list};
-use crate::random::{Ensemble, RandomDistribution, RandomVariable, Sampling};
+use crate::random::{Ensemble, EnsembleOutput, RandomDistribution, RandomVariable, Sampling};
 use crate::{Case, RandomOf};
 
 /// Greatest magnitude of a parameter, beyond that of any value of a case.
@@ -117,6 +117,10 @@ fn correlations(key: &Key, case: &Case) -> Check {
 fn ensemble(key: &Key, ensemble: &Ensemble) -> Check {
     whole(key, "samples", ensemble.samples, (1, 10_000_000), "100 to 1000 are usual")?;
     number(key, "limit", ensemble.limit, PARAMETER, "", "1 is the limit of a factor of safety")?;
+    if ensemble.output == EnsembleOutput::Failure {
+        let hint = "with output = \"failure\" trials are made at it, which reach so far";
+        number(key, "limit", ensemble.limit, Range::from(0.05).to(20.0), "", hint)?;
+    }
     let Some(interval) = ensemble.interval else { return Ok(()) };
     number(key, "interval", interval, Range::above(0.0).below(1.0), "", "0.05 is usual")?;
     if ensemble.sampling != Sampling::MonteCarlo {

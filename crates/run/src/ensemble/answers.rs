@@ -10,24 +10,28 @@ use enmm_io::LoadedCase;
 
 use super::{Answer, EnsembleError, EnsembleOptions, SearchOptions, columns};
 
-/// What a worker is asked for.
+/// Order to a worker.
 #[derive(Debug)]
 pub struct Ask {
     /// Number of the sample.
     pub sample: usize,
     /// Its values, as settings of the case.
     pub settings: Vec<String>,
-    /// What to work out of it.
+    /// Output to work out of it.
     pub output: EnsembleOutput,
     /// Options of the search.
     pub search: SearchOptions,
 }
 
-/// How far an ensemble has come.
+/// How far the work on an output has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnsembleProgress {
-    /// What is being worked out.
+    /// The output.
     pub output: EnsembleOutput,
+    /// When the work began.
+    pub begun: Instant,
+    /// Samples that the store had then.
+    pub stored: usize,
     /// Samples of which it is there.
     pub done: usize,
     /// Samples of which it is wanted.
@@ -138,10 +142,12 @@ impl<'a> Answers<'a> {
     /// Counts what the store has; rows that are to be worked out again do not count.
     fn begin(&self, output: EnsembleOutput, found: &[Option<Row>]) -> EnsembleProgress {
         let (wanted, limit) = (found.len(), self.loaded.case.ensemble.limit);
-        let mut progress = EnsembleProgress { output, done: 0, wanted, answered: 0, below: 0, slowest: None };
+        let begun = Instant::now();
+        let mut progress =
+            EnsembleProgress { output, begun, stored: 0, done: 0, wanted, answered: 0, below: 0, slowest: None };
         let kept = found.iter().flatten().filter(|row| row.is_done() || !self.options.retry_failed);
         kept.for_each(|row| progress.note(row, limit, None));
-        progress
+        EnsembleProgress { stored: progress.done, ..progress }
     }
 }
 

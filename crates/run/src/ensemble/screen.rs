@@ -52,7 +52,7 @@ impl Margin {
     }
 }
 
-/// The rows of some samples; the first call finds the margin.
+/// The rows of some samples; those of the first ones, number 0 among them, find the margin for all.
 ///
 /// # Errors
 /// See [`EnsembleError`].
@@ -63,11 +63,12 @@ pub fn rows(
     answers: &mut Answers,
     margin: &mut Option<Margin>,
 ) -> Result<Vec<Row>, EnsembleError> {
+    let is_first = samples.start == 0;
     let samples: Vec<usize> = samples.collect();
     let bounds = answers.find(&samples, LevelTops, &SearchOptions::default())?;
     let bound = |i: usize| bounds[i].number("level_tops");
     let mut rows: Vec<Option<Row>> = vec![None; samples.len()];
-    if margin.is_none() {
+    if is_first {
         let pilot = nearest(&bounds, limit);
         let places: Vec<usize> = pilot.iter().map(|&i| samples[i]).collect();
         let factors = answers.find(&places, FactorOfSafety, search)?;

@@ -87,6 +87,8 @@ def run(
         raise invalid(
             "output: is a function without a name of its own, by which a store could find it; define one by def"
         )
+    if output == "failure" and not 0.05 <= limit <= 20:
+        raise invalid(f'limit: is {limit}, must be from 0.05 to 20 with output "failure", which makes trials at it')
     if interval is not None and (not 0 < interval < 1 or method != "monte_carlo"):
         raise invalid(
             f'interval: is {interval} with method {method!r}, must be within 0 and 1 with "monte_carlo": the first '

@@ -43,10 +43,10 @@ class Margin(NamedTuple):
 def screened(
     samples: Sequence[int], limit: float, options: dict[str, Any], find: Find, margin: Margin | None
 ) -> tuple[list[Row], Margin | None]:
-    """The rows of some samples, and the margin, which the first call finds."""
+    """The rows of some samples, and the margin, which the first ones find, number 0 among them."""
     bounds = find(samples, "level_tops", {})
     rows: dict[int, Row] = {}
-    if margin is None:
+    if samples[0] == 0:
         pilot = _nearest(bounds, limit)
         factors = find([samples[i] for i in pilot], "factor_of_safety", options)
         pairs = [pair for i, row in zip(pilot, factors, strict=True) if (pair := _pair(bounds[i], row))]
