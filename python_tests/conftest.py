@@ -7,6 +7,7 @@ import os
 import subprocess
 from pathlib import Path
 
+import browser
 import pytest
 from fmu_support import Fmu, Instance
 
@@ -32,6 +33,15 @@ def results() -> Path:
 def short_case() -> Path:
     """The case behind `results`."""
     return Path(__file__).with_name("short.toml")
+
+
+@pytest.fixture(scope="session")
+def program() -> str:
+    """A browser that draws pages without a window; tests of pages are skipped without it."""
+    found = browser.find()
+    if not found:
+        pytest.skip("there is no Chromium on this machine (Debian: apt-get install chromium)")
+    return found
 
 
 @pytest.fixture(scope="session")

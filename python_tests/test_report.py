@@ -38,14 +38,6 @@ PARTS = [
 ]
 
 
-@pytest.fixture(scope="module")
-def program() -> str:
-    found = browser.find()
-    if not found:
-        pytest.skip("there is no Chromium on this machine (Debian: apt-get install chromium)")
-    return found
-
-
 @pytest.fixture
 def page(program, tmp_path):
     opened = browser.Browser(program, tmp_path / "profile")

@@ -24,14 +24,6 @@ azimuth_deg = 75
 
 
 @pytest.fixture(scope="module")
-def program() -> str:
-    found = browser.find()
-    if not found:
-        pytest.skip("there is no Chromium on this machine (Debian: apt-get install chromium)")
-    return found
-
-
-@pytest.fixture(scope="module")
 def folder(enmm, short_case, tmp_path_factory):
     """Results of a run of the short case, with names that hardly fit."""
     place = tmp_path_factory.mktemp("paper")

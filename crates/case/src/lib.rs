@@ -28,7 +28,7 @@ pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_set::{AngleDistribution, Bridge, Cut, Distribution, JointSet, LawRegion, Section, Side};
-pub use orientation::{AZIMUTH, Orientation, Orientations};
+pub use orientation::{AZIMUTH, Orientation, Orientations, dip_in_section, trace_angle};
 pub use pictures::{PictureKind, Pictures};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
 pub use validate::Invalid;
@@ -45,7 +45,7 @@ pub type TimeTable = Vec<[f64; 2]>;
 pub struct Case {
     /// Description of the model.
     pub title: String,
-    /// What the reader of a geometry file has converted or left out; notes of the built model begin with it.
+    /// Conversions and omissions of the reader of a geometry file; notes of the built model begin with it.
     #[serde(skip)]
     pub reader_notes: Vec<String>,
     /// Rock outline and joint traces from files.

@@ -93,13 +93,27 @@ fn orientation(of: &Orientations, set: &JointSet, name: String, friction: f64) -
         (Some(angle), ..) => Some(flat(angle)),
         (None, Some(dip), Some(side), _) => Some(flat(if side == Side::Left { dip } else { -dip })),
         (None, Some(dip), None, Some(direction)) => {
-            let (sin, cos) = libm::sincos(dip.to_radians());
-            let along = libm::cos((direction - section).to_radians());
-            let trace = -libm::atan2(sin * along, cos).to_degrees();
+            let trace = trace_angle(dip, direction - section);
             Some(Orientation { name, dip, direction: direction.rem_euclid(360.0), in_space: true, trace, friction })
         }
         _ => None,
     }
+}
+
+/// Angle (degrees), counter-clockwise from an axis, of the trace of a plane in the upright section along that axis: it
+/// dips by `dip` (degrees) towards `off` (degrees), clockwise from the axis on a map. tan(apparent dip) =
+/// tan(dip)·cos(off).
+pub fn trace_angle(dip: f64, off: f64) -> f64 {
+    let (sin, cos) = libm::sincos(dip.to_radians());
+    -libm::atan2(sin * libm::cos(off.to_radians()), cos).to_degrees()
+}
+
+/// Dip (degrees) of a line in the section at an angle (degrees) from the x axis, and the side towards which it goes
+/// down; none where it is level or upright to a tenth of a degree.
+pub fn dip_in_section(angle: f64) -> (f64, Option<Side>) {
+    let angle = folded(angle);
+    let side = if angle > 0.0 { Side::Left } else { Side::Right };
+    (angle.abs(), Some(side).filter(|_| (0.05..89.95).contains(&angle.abs())))
 }
 
 /// An angle of a line, which has no sense: between -90 and 90 degrees.

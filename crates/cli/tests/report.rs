@@ -4,25 +4,10 @@
 use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
-
-use crate::support::{Place, incline};
+use crate::json::numbers;
+use crate::support::{Place, incline, json};
 
 const NOTES: &str = "[report]\nproject = \"Quarry North\"\nauthor = \"R. Ock\"\n[section]\nazimuth_deg = 75\n";
-
-fn record(place: &Place, name: &str) -> Value {
-    serde_json::from_str(&fs::read_to_string(place.path(name)).expect("a record")).expect("JSON")
-}
-
-/// All numbers of a record.
-fn numbers(value: &Value, into: &mut Vec<f64>) {
-    match value {
-        Value::Number(number) => into.extend(number.as_f64()),
-        Value::Array(list) => list.iter().for_each(|value| numbers(value, into)),
-        Value::Object(map) => map.values().for_each(|value| numbers(value, into)),
-        _ => {}
-    }
-}
 
 /// The text of the tables without the numbers of records and without heads: what digits it has are names.
 fn words_of_cells(html: &str) -> String {
@@ -47,14 +32,14 @@ fn all_results_of_a_case_are_printed_with_the_numbers_of_their_records() {
     let html = fs::read_to_string(place.path("case/report_a4.html")).expect("the report");
     let mut known = Vec::new();
     for name in ["case/summary.json", "case/fos/fos.json", "case/bound/bound.json"] {
-        numbers(&record(&place, name), &mut known);
+        numbers(&json(&place.path(name)), &mut known);
     }
     let shown: Vec<&str> = html.split("<data value=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
     assert!(shown.len() > 60, "{}", shown.len());
     for value in shown {
         assert!(known.contains(&value.parse().expect("a number")), "{value}");
     }
-    let fingerprint = record(&place, "case/summary.json")["case_hash"].as_str().expect("a hash").to_owned();
+    let fingerprint = json(&place.path("case/summary.json"))["case_hash"].as_str().expect("a hash").to_owned();
     let words =
         words_of_cells(&html).replace(&fingerprint, "").replace(&format!("enmm {}", env!("CARGO_PKG_VERSION")), "");
     let stray: Vec<&str> = words.lines().filter(|line| line.contains(|c: char| c.is_ascii_digit())).collect();
@@ -84,7 +69,7 @@ fn the_notes_of_a_report_are_no_part_of_the_case() {
     let [with, without] = [NOTES, ""].map(|notes| Place::with(&incline(0.65, notes)));
     let bound = |place: &Place| {
         assert_eq!(place.enmm(&["bound", "case.toml"]).status, Some(0));
-        record(place, "case/bound/bound.json")
+        json(&place.path("case/bound/bound.json"))
     };
     let [with, without] = [&with, &without].map(bound);
     assert_eq!(with["case_hash"], without["case_hash"]);

@@ -9,6 +9,7 @@ pub mod checkpoint;
 pub mod files;
 mod geometry_file;
 mod lines;
+pub mod numbers;
 mod record_file;
 mod schema;
 

@@ -1,5 +1,6 @@
 //! Numbers as a reader wants them: three digits, or as they were typed, with the unit that suits their size.
 
+use enmm_io::numbers::{self, superscript, with_minus};
 use serde_json::Value;
 
 /// A number of a record with its unit.
@@ -77,15 +78,7 @@ pub fn steel_area(value: &Value) -> Option<Number> {
 
 /// Three significant digits: `94.6`, `1.44`, `2510`.
 fn three_digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    if rounded == 0.0 || !rounded.is_finite() {
-        return format!("{}", rounded + 0.0);
-    }
-    let exponent = libm::log10(rounded.abs() * (1.0 + 1e-12)).floor() as i32;
-    if !(-4..7).contains(&exponent) {
-        return scientific(&format!("{rounded:.2e}"));
-    }
-    format!("{rounded:.*}", (2 - exponent).max(0) as usize).replace('-', "−")
+    numbers::three_digits(value).unwrap_or_else(|rounded| scientific(&format!("{rounded:.2e}")))
 }
 
 /// At most six significant digits without zeros at the end, which hides the rounding of a change of units.
@@ -94,16 +87,14 @@ fn typed(value: f64) -> String {
     if rounded != 0.0 && !(1e-4..1e9).contains(&rounded.abs()) {
         return scientific(&format!("{rounded:e}"));
     }
-    format!("{}", rounded + 0.0).replace('-', "−")
+    with_minus(&format!("{}", rounded + 0.0))
 }
 
 /// `1.2e-7` as `1.2 · 10⁻⁷`.
 fn scientific(text: &str) -> String {
-    let Some((mantissa, exponent)) = text.split_once('e') else { return text.to_owned() };
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |letter: char| letter.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]);
-    let exponent: String = exponent.chars().map(raised).collect();
-    format!("{} · 10{exponent}", mantissa.replace('-', "−"))
+    let parts = text.split_once('e').and_then(|(mantissa, exponent)| Some((mantissa, exponent.parse().ok()?)));
+    let Some((mantissa, exponent)) = parts else { return text.to_owned() };
+    format!("{} · 10{}", with_minus(mantissa), superscript(exponent))
 }
 
 #[cfg(test)]

@@ -1,3 +1,5 @@
 //! Tests of the report on paper.
 
+#[path = "../../../tests/common/json.rs"]
+mod json;
 mod report;

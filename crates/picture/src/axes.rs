@@ -3,6 +3,7 @@
 use super::colour::{GREY, INK, PALE};
 use super::sheet::{Anchor, Pixel, Rect, Sheet, Style, TextStyle, text_width};
 use enmm::geometry::{Point, Vector};
+use enmm_io::numbers::{self, superscript, with_minus};
 
 /// Size (px) of numbers on axes.
 pub const TICK_SIZE: f64 = 17.0;
@@ -182,7 +183,7 @@ impl Ticks {
     /// A value in as many decimals as the step needs.
     pub fn label(&self, value: f64) -> String {
         // Adding zero turns -0 into 0.
-        with_minus(format!("{:.*}", self.decimals, value + 0.0))
+        with_minus(&format!("{:.*}", self.decimals, value + 0.0))
     }
 }
 
@@ -200,29 +201,19 @@ pub fn round_above(value: f64) -> f64 {
 pub fn number_text(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !value.is_finite() {
-        return with_minus(format!("{}", value + 0.0));
+        return with_minus(&format!("{}", value + 0.0));
     }
     let exponent = libm::log10(size).floor() as i32;
     if !(-4..7).contains(&exponent) {
         let mantissa = trimmed(format!("{:.3}", value / 10.0_f64.powi(exponent)));
-        return with_minus(format!("{mantissa} × 10{}", superscript(exponent)));
+        return with_minus(&format!("{mantissa} × 10{}", superscript(exponent)));
     }
-    with_minus(trimmed(format!("{value:.*}", (3 - exponent).max(0) as usize)))
+    with_minus(&trimmed(format!("{value:.*}", (3 - exponent).max(0) as usize)))
 }
 
 /// A number in three digits, for readers: `94.6`, `1.44`, `2510`.
 pub fn three_digits(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || !value.is_finite() {
-        return number_text(value);
-    }
-    // Rounding first keeps 9.996 from becoming 10.00.
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    let exponent = libm::log10(rounded.abs() * (1.0 + 1e-12)).floor() as i32;
-    if !(-4..7).contains(&exponent) {
-        return number_text(rounded);
-    }
-    with_minus(format!("{rounded:.*}", (2 - exponent).max(0) as usize))
+    numbers::three_digits(value).unwrap_or_else(number_text)
 }
 
 /// A value in three digits with the prefix in which it reads well: `1.25 MPa`.
@@ -232,21 +223,10 @@ pub fn si_text(value: f64, unit: &str) -> String {
     let (size, prefix) = fits.filter(|_| value.is_finite()).unwrap_or((1.0, ""));
     let scaled = value / size;
     let decimals = 2 - libm::log10(scaled.abs().max(1.0)).floor().clamp(0.0, 2.0) as usize;
-    with_minus(format!("{} {prefix}{unit}", trimmed(format!("{:.decimals$}", scaled + 0.0))))
-}
-
-/// A whole number in raised digits.
-pub fn superscript(value: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |letter: char| letter.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
-    value.to_string().chars().map(raised).collect()
+    with_minus(&format!("{} {prefix}{unit}", trimmed(format!("{:.decimals$}", scaled + 0.0))))
 }
 
 /// Without trailing zeros of a decimal fraction.
 fn trimmed(number: String) -> String {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.').to_owned() } else { number }
-}
-
-fn with_minus(number: String) -> String {
-    number.replace('-', "−")
 }

@@ -1,7 +1,9 @@
 //! One quantity over another: lines and marks in a frame with linear or logarithmic axes, and a legend.
 
 use super::Picture;
-use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
+use enmm_io::numbers::superscript;
+
+use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number};
 use super::colour::{GREY, INK, LINES, WHITE};
 use super::history::thinned;
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};

@@ -4,7 +4,9 @@
 //! equal width without numbers.
 
 use super::Picture;
-use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, superscript};
+use enmm_io::numbers::superscript;
+
+use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number};
 use super::colour::{BAND, Colour, GREY, INK, LINES};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};

@@ -1,6 +1,6 @@
 //! The stereonet of a case: its joint sets and face in space.
 
-use enmm::model::case::{Orientation, Orientations};
+use enmm::model::case::{Orientation, Orientations, Side, dip_in_section};
 use enmm_io::LoadedCase;
 use enmm_picture::{Projection, Stereonet};
 use enmm_stability::kinematics::{Joints, Limits, Plane};
@@ -66,11 +66,11 @@ pub fn stereonet(loaded: &LoadedCase, options: &NetOptions) -> Result<Stereonet,
 /// The trace of a plane in words: `in the section 24° down to the right`.
 pub fn apparent(plane: &Orientation) -> String {
     let sign = if plane.in_space { "" } else { "⊥ " };
-    let (dip, side) = (plane.trace.abs(), if plane.trace > 0.0 { "left" } else { "right" });
-    match dip {
-        dip if dip < 0.05 => format!("{sign}level in the section"),
-        dip if dip >= 89.95 => format!("{sign}upright in the section"),
-        dip => format!("{sign}in the section {dip:.1}° down to the {side}"),
+    match dip_in_section(plane.trace) {
+        (dip, Some(Side::Left)) => format!("{sign}in the section {dip:.1}° down to the left"),
+        (dip, Some(Side::Right)) => format!("{sign}in the section {dip:.1}° down to the right"),
+        (dip, None) if dip < 45.0 => format!("{sign}level in the section"),
+        (_, None) => format!("{sign}upright in the section"),
     }
 }
 

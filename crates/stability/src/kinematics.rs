@@ -7,6 +7,8 @@
 //! (E. Hoek and J. Bray, Rock slope engineering, 1981; R. E. Goodman, Introduction to rock mechanics, 1989;
 //! D. C. Wyllie and C. W. Mah, Rock slope engineering, 2004).
 
+use enmm::model::case::trace_angle;
+
 /// A plane in space by its dip and the azimuth towards which it dips (degrees).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
@@ -89,8 +91,7 @@ impl Plane {
 
     /// Dip (degrees) of the trace of the plane in a vertical section towards an azimuth, negative if it rises.
     pub fn apparent_dip(&self, towards: f64) -> f64 {
-        let (sin, cos) = libm::sincos(self.dip.to_radians());
-        libm::atan2(sin * libm::cos((self.direction - towards).to_radians()), cos).to_degrees()
+        -trace_angle(self.dip, self.direction - towards)
     }
 
     /// The line in which two planes meet, if they are not parallel.

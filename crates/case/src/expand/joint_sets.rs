@@ -2,6 +2,7 @@
 
 use super::Expanded;
 use crate::key::Key;
+use crate::orientation::trace_angle;
 use crate::validate::checks::{Check, Range, fail, number, optional};
 use crate::{Case, JointSet, Section, Side};
 
@@ -96,11 +97,10 @@ fn needless(key: &Key, set: &JointSet) -> Check {
     })
 }
 
-/// The trace in the section of joints that dip by `dip_deg` towards `off_deg` clockwise from the x axis, seen on a map:
-/// tan(apparent dip) = tan(dip)·cos(off). The pole leaves the section by asin(sin(dip)·sin(off)).
+/// The trace in the section of joints that dip by `dip_deg` towards `off_deg` clockwise from the x axis, seen on a map.
+/// The pole leaves the section by asin(sin(dip)·sin(off)).
 fn apparent(key: &Key, set: &mut JointSet, dip_deg: f64, off_deg: f64) -> Check {
-    let ((sin, cos), off) = (libm::sincos(dip_deg.to_radians()), off_deg.to_radians());
-    let out = sin * libm::sin(off);
+    let out = libm::sin(dip_deg.to_radians()) * libm::sin(off_deg.to_radians());
     let within = (1.0 - out * out).max(0.0).sqrt();
     if within < TRACE_SHARE {
         let message = format!(
@@ -110,7 +110,7 @@ fn apparent(key: &Key, set: &mut JointSet, dip_deg: f64, off_deg: f64) -> Check 
         );
         return fail(key, message);
     }
-    set.angle_deg = Some(-libm::atan2(sin * libm::cos(off), cos).to_degrees());
+    set.angle_deg = Some(trace_angle(dip_deg, off_deg));
     set.out_of_section_deg = libm::asin(out).to_degrees();
     set.spacing /= within;
     set.spacing_sd /= within;

@@ -58,7 +58,7 @@ pub fn build(case: &CaseArguments, shown: &Shown, bounds: &BoundDesk) -> Option<
     inputs
 }
 
-/// What a built model shows.
+/// Facts of a built model.
 struct Pictured {
     page: Arc<[u8]>,
     facts: Vec<(String, String)>,

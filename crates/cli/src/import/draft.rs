@@ -72,7 +72,7 @@ impl<'a> Draft<'a> {
         text + "\n[[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration_max = 10\n"
     }
 
-    /// What to print: layers, assumptions and open points.
+    /// Lines to print: layers, assumptions and open points.
     pub fn report(&self, case: &Path) -> String {
         let width = self.layers.iter().map(|mapped| mapped.layer.name.chars().count()).max().unwrap_or(0).max(5);
         let mut lines: Vec<String> = self.survey.notes.iter().map(|note| format!("note: {note}")).collect();

@@ -63,6 +63,13 @@ impl Outcome {
         Self { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
     }
 
+    /// Asserts that the output has all `parts`.
+    pub fn assert_printed(&self, parts: &[&str]) {
+        for part in parts {
+            assert!(self.stdout.contains(part), "{part:?} is not in {}", self.stdout);
+        }
+    }
+
     /// Asserts a status of 2 and one line that begins with `error: ` and has all `parts`.
     pub fn assert_bad_input(&self, parts: &[&str]) {
         assert_eq!(self.status, Some(2), "{self:?}");
