@@ -101,7 +101,7 @@ impl HoekBrown {
         };
         curve.first = curve.table[0];
         if curve.tension < end {
-            curve.first = curve.root(end, |at| at.ends()[0] - curve.tension).unwrap_or(curve.first);
+            curve.first = curve.root(SOLVED * end, |at| at.ends()[0] - curve.tension).unwrap_or(curve.first);
         }
         curve
     }
@@ -158,14 +158,13 @@ impl Curve {
             return 2.0 * (radius - outer);
         }
         let largest = largest.abs().max(smallest.abs());
-        let at = self.root(largest, |at| centre - at.centre);
+        let at = self.root(SOLVED * largest, |at| centre - at.centre);
         2.0 * (radius - at.unwrap_or(self.first).radius)
     }
 
     /// The circle at which a quantity that falls from circle to circle is zero; none when it is not positive at the
-    /// first one. `scale` is the stress (Pa) beside which a rest is nothing.
-    fn root(&self, scale: f64, value: impl Fn(&Circle) -> f64) -> Option<Circle> {
-        let enough = SOLVED * scale;
+    /// first one. A rest of `enough` (Pa) is none.
+    fn root(&self, enough: f64, value: impl Fn(&Circle) -> f64) -> Option<Circle> {
         let first = self.table.partition_point(|at| at.v <= self.first.v);
         if value(&self.first).is_nan() || value(&self.first) <= 0.0 {
             return None;
@@ -275,6 +274,29 @@ impl Onto<'_> {
 
     fn root(&self, value: impl Fn(&Circle) -> f64) -> Option<Circle> {
         let largest = self.trial[0].abs().max(self.trial[2].abs());
-        self.curve.root(largest, value)
+        self.curve.root(SOLVED * largest, value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half and twice the rest at which an equation counts as solved find the same circle, to that rest.
+    #[test]
+    fn no_circle_depends_on_the_rest_that_counts_as_none() {
+        for (gsi, mi) in [(5.0, 2.0), (45.0, 10.0), (100.0, 25.0)] {
+            let envelope = enmm_case::HoekBrown { sigma_ci: 30e6, mi, gsi, d: 0.0, associated: false }.envelope();
+            let curve = HoekBrown::new(envelope, 0.0, None).curve(0.8);
+            for k in 0..60 {
+                let centre = 1e3 * 1.3f64.powi(k);
+                let radius = |rest: f64| curve.root(rest * centre, |at| centre - at.centre).map(|at| at.radius);
+                let [half, own, double] = [0.5, 1.0, 2.0].map(|share| radius(share * SOLVED));
+                for other in [half, double] {
+                    let apart = own.zip(other).map(|(own, other)| (own - other).abs() / centre);
+                    assert!(apart.is_some_and(|apart| apart <= 8.0 * SOLVED), "{gsi} {centre}: {own:?} {other:?}");
+                }
+            }
+        }
     }
 }

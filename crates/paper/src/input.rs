@@ -27,7 +27,10 @@ pub fn input_chapter(records: &Records) -> String {
     );
     chapter("Section", &section)
         + &chapter("Rock and joints", &[rocks(input), laws(input), sets(input), joints(input)].concat())
-        + &chapter("Stress, water and loads", &[in_situ(input), water(input), loads(input), motions(input)].concat())
+        + &chapter(
+            "Stress, water and loads",
+            &[in_situ(input), water(input), drawdowns(input), loads(input), motions(input)].concat(),
+        )
         + &chapter("Bolts as designed", &bolts(input))
         + &chapter("Stages as planned", &stages(input))
 }
@@ -57,10 +60,27 @@ fn rocks(input: &Value) -> String {
             stress(&rock["cohesion"]).into(),
             stress(&rock["tension"]).into(),
             plain(&rock["dilation_deg"], "°", Typed).into(),
+            stress(&rock["hoek_brown"]["sigma_ci"]).into(),
+            plain(&rock["hoek_brown"]["mi"], "", Typed).into(),
+            plain(&rock["hoek_brown"]["gsi"], "", Typed).into(),
+            plain(&rock["hoek_brown"]["d"], "", Typed).into(),
         ]
     };
     let rows: Vec<Vec<Cell>> = named(&input["rocks"]).map(row).collect();
-    let head = ["Rock", "Density", "Young's modulus", "Poisson's ratio", "Friction", "Cohesion", "Tension", "Dilation"];
+    let head = [
+        "Rock",
+        "Density",
+        "Young's modulus",
+        "Poisson's ratio",
+        "Friction",
+        "Cohesion",
+        "Tension",
+        "Dilation",
+        "Hoek–Brown σci",
+        "mi",
+        "GSI",
+        "D",
+    ];
     part("Rock", &table(&head, &rows))
 }
 
@@ -80,6 +100,8 @@ fn laws(input: &Value) -> String {
             stress(&law["jcs"]).into(),
             prefixed(&law["normal_stiffness"], "Pa/m", Typed).into(),
             prefixed(&law["shear_stiffness"], "Pa/m", Typed).into(),
+            plain(&law["tension_energy"], "J/m²", Typed).into(),
+            plain(&law["shear_energy"], "J/m²", Typed).into(),
         ]
     };
     let rows: Vec<Vec<Cell>> = named(&input["joint_laws"]).map(row).collect();
@@ -96,6 +118,8 @@ fn laws(input: &Value) -> String {
         "JCS",
         "Normal stiffness",
         "Shear stiffness",
+        "Energy of fracture, opening",
+        "Energy of fracture, slip",
     ];
     part("Strength of joints", &table(&head, &rows))
 }
@@ -183,6 +207,17 @@ fn water(input: &Value) -> String {
     part("Water", &facts(&rows))
 }
 
+/// Surfaces of the water that stages bring.
+fn drawdowns(input: &Value) -> String {
+    let row = |stage: &Value| -> Vec<Cell> {
+        let water = &stage["water"];
+        vec![text(&stage["name"]).into(), length(&water["level"], Typed).into(), points(&water["table"])]
+    };
+    let stages = entries(&input["stages"]).iter().filter(|stage| stage["water"].is_object());
+    let rows: Vec<Vec<Cell>> = stages.map(row).collect();
+    part("Water in later stages", &table(&["Stage", "Level", "Water table"], &rows))
+}
+
 /// Points as `(x, y)` in metres.
 fn points(value: &Value) -> Cell {
     let parts: Vec<(String, Number)> = entries(value)
@@ -246,6 +281,7 @@ fn bolts(input: &Value) -> String {
             steel_area(&bolt["area"]).into(),
             nonzero(&bolt["pretension"], |value| prefixed(value, "N", Typed)),
             prefixed(&bolt["yield_force"], "N", Typed).into(),
+            text_or_none(&bolt["support"]),
         ]
     };
     let rows: Vec<Vec<Cell>> = entries(&input["bolts"]).iter().enumerate().map(row).collect();
@@ -259,6 +295,7 @@ fn bolts(input: &Value) -> String {
         "Section of a bar",
         "Pretension",
         "Yield force",
+        "Support",
     ];
     table(&head, &rows)
 }

@@ -7,6 +7,8 @@ use std::path::Path;
 use enmm_paper::{Converter, REPORT, Records, RecordsError, report_html, write_report};
 use serde_json::{Value, json};
 
+use crate::json::numbers;
+
 fn input() -> Value {
     json!({
         "report": { "project": "Quarry <North>", "author": "R. Ock & Co", "date": "2026-11-25" },
@@ -59,16 +61,6 @@ fn folder_with(files: &[(&str, &Value)]) -> tempfile::TempDir {
 
 fn html(folder: &Path) -> String {
     report_html(&Records::read(folder).expect("records"))
-}
-
-/// All numbers of a record.
-fn numbers(value: &Value, into: &mut Vec<f64>) {
-    match value {
-        Value::Number(number) => into.extend(number.as_f64()),
-        Value::Array(list) => list.iter().for_each(|value| numbers(value, into)),
-        Value::Object(map) => map.values().for_each(|value| numbers(value, into)),
-        _ => {}
-    }
 }
 
 #[test]
@@ -173,5 +165,25 @@ fn a_converter_that_fails_leaves_nothing() {
         let error = Converter::named(Path::new(program)).convert(&page, &pdf).expect_err("no PDF").to_string();
         assert!(error.contains(program), "{error}");
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), before);
+    }
+}
+
+/// Rock by Hoek–Brown, energies of fracture, supports and drawdowns were added after the tables of input.
+#[test]
+fn no_strength_of_the_input_is_left_out() {
+    let mut record = fos();
+    let input = &mut record["input"];
+    input["rocks"]["gneiss"]["hoek_brown"] = json!({ "sigma_ci": 30e6, "mi": 7.5, "gsi": 45.0, "d": 0.7 });
+    input["joint_laws"]["fault"]["tension_energy"] = json!(51.0);
+    input["joint_laws"]["fault"]["shear_energy"] = json!(502.0);
+    input["bolts"][0]["support"] = json!("passive");
+    input["stages"][0]["water"] = json!({ "level": 3.25, "table": null });
+    let folder = folder_with(&[("fos.json", &record)]);
+    let html = html(folder.path());
+    for part in ["<data value=\"30000000\">30</data>", "45", "7.5", "0.7", "51", "502", "passive", "3.25"] {
+        assert!(html.contains(part), "{part}");
+    }
+    for head in ["Hoek–Brown σci", "GSI", "Energy of fracture, slip", "Support", "Water in later stages"] {
+        assert!(html.contains(head), "{head}");
     }
 }

@@ -3,7 +3,7 @@
 use enmm::geometry::ends::EndChange;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm::model::case::{Anchorage, Axes, JointLaw, JointLawKind, Load, LoadKind, Port, Rock};
+use enmm::model::case::{Anchorage, Axes, JointLaw, JointLawKind, Load, LoadKind, Port, Rock, Side, dip_in_section};
 use enmm::model::tables::EdgeId;
 use enmm_observe::{SupportKind, bolts, supports, water_surface};
 
@@ -189,6 +189,10 @@ fn rock_values(rock: &Rock) -> String {
     let mut values = vec![format!("{} kg/m³", rock.density), format!("E {}", si_text(rock.young, "Pa"))];
     values.extend(rock.friction_deg.map(|friction| format!("φ {}°", number_text(friction))));
     values.extend(rock.cohesion.map(|cohesion| format!("c {}", si_text(cohesion, "Pa"))));
+    values.extend(rock.hoek_brown.map(|rock| {
+        let [mi, gsi, d] = [rock.mi, rock.gsi, rock.d].map(number_text);
+        format!("σci {}, mi {mi}, GSI {gsi}, D {d}", si_text(rock.sigma_ci, "Pa"))
+    }));
     values.extend(rock.tension.map(|tension| format!("t {}", si_text(tension, "Pa"))));
     values.join(", ")
 }
@@ -213,15 +217,9 @@ fn law_values(law: &JointLaw) -> String {
 
 /// An angle counter-clockwise from the x axis (degrees) with its scatter, as a dip to a side: `20 ± 2° right`.
 fn dip(angle: f64, scatter: &str) -> String {
-    let angle = angle - 180.0 * ((angle - 90.0) / 180.0).ceil();
-    let side = if !(0.05..89.95).contains(&angle.abs()) {
-        ""
-    } else if angle < 0.0 {
-        " right"
-    } else {
-        " left"
-    };
-    format!("dip {}{scatter}°{side}", short(angle.abs()))
+    let (dip, side) = dip_in_section(angle);
+    let side = side.map_or("", |side| if side == Side::Left { " left" } else { " right" });
+    format!("dip {}{scatter}°{side}", short(dip))
 }
 
 /// Actions on all rock, in words.
