@@ -7,7 +7,6 @@ import os
 import subprocess
 from pathlib import Path
 
-import browser
 import pytest
 from fmu_support import Fmu, Instance
 
@@ -38,6 +37,9 @@ def short_case() -> Path:
 @pytest.fixture(scope="session")
 def program() -> str:
     """A browser that draws pages without a window; tests of pages are skipped without it."""
+    # Its package is there with the tests of pages alone.
+    import browser
+
     found = browser.find()
     if not found:
         pytest.skip("there is no Chromium on this machine (Debian: apt-get install chromium)")
