@@ -29,9 +29,9 @@ use repository::{Profile, Repository};
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
-  test             what a newcomer and every commit runs: format, lints, build, tests, hosts in C and C++,
+  test             what a newcomer and every commit runs: format, build, tests, hosts in C and C++,
                    ctypes, FMPy, header, schema, quick bits; installs nothing outside the target folder
-  test --all       the same first, then what is long or needs other systems: Windows, ARM, Chromium,
+  test --all       the same first, then what is long or needs other systems: lints, Windows, ARM, Chromium,
                    rustdoc, oldest compiler, licences, notebooks, fuzz, faults, sanitizers, long forms
   python           the Python tests alone
   long             the long campaigns: tests named long_*, with ENMM_LONG=1

@@ -20,7 +20,7 @@ use crate::venv::{self, Packages};
 /// The schema of the case file.
 pub const SCHEMA: &str = "docs/case.schema.json";
 /// Left to `cargo xtask test --all`.
-const LEFT_OUT: &str = "Windows and ARM, Chromium, rustdoc, the oldest compiler, licences and advisories of \
+const LEFT_OUT: &str = "lints, Windows and ARM, Chromium, rustdoc, the oldest compiler, licences and advisories of \
     dependencies, notebooks and other Python tests, fuzzing, faults, sanitizers, the long forms of tests";
 
 /// The tests of a newcomer and of every commit: they install nothing outside the target folder.
@@ -43,12 +43,10 @@ pub fn all(repository: &Repository) -> ExitCode {
 
 /// Every step runs, whatever failed before, but for those that need the build; returns whether there is one.
 fn take_usual(repository: &Repository, steps: &mut Steps) -> bool {
-    let cargo = |args: &[&str]| repository::run(&mut repository.cargo(args)).map(|()| Counts::default());
-    steps.take("format", || cargo(&["fmt", "--all", "--check"]));
+    steps.take("format", || cargo(repository, &["fmt", "--all", "--check"]));
     std::thread::scope(|scope| {
         // The installation waits for the network more than it computes.
         scope.spawn(|| venv::prepare(repository, Packages::Usual));
-        steps.take("lints", || cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
         if !steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default())) {
             return false;
         }
@@ -65,6 +63,7 @@ fn take_others(repository: &Repository, steps: &mut Steps) {
     let oldest = supply::start_oldest_compiler(repository);
     let platforms = [&WINDOWS_QUICK, &AARCH64_QUICK];
     let platforms = platforms.map(|platform| (platform.name, cross::start_quick(repository, platform)));
+    steps.take("lints", || cargo(repository, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     steps.take("documentation", || {
         let mut doc = repository.cargo(&["doc", "--workspace", "--no-deps"]);
         repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
@@ -79,6 +78,10 @@ fn take_others(repository: &Repository, steps: &mut Steps) {
     for (name, build) in platforms {
         steps.take(name, || cross::quick(repository, build?));
     }
+}
+
+fn cargo(repository: &Repository, args: &[&str]) -> Result<Counts, String> {
+    repository::run(&mut repository.cargo(args)).map(|()| Counts::default())
 }
 
 /// Runs the long campaigns; it fails when one failed, or there is none.
