@@ -165,31 +165,26 @@ impl RegularMesh {
     }
 
     /// Edges of all triangles that come near the box `low`–`high`, each once.
-    pub fn segments(&self, low: Point, high: Point) -> Vec<Segment> {
+    pub fn segments(&self, low: Point, high: Point) -> impl Iterator<Item = Segment> {
         let margin = Vector::new(self.size, self.size) * 0.51;
         let (low, high) = (low - margin, high + margin);
-        let near = |t: Triangle| {
+        let near = move |t: Triangle| {
             let nodes = t.nodes().map(|n| self.node(n));
             let least = nodes[0].inf(&nodes[1]).inf(&nodes[2]);
             let most = nodes[0].sup(&nodes[1]).sup(&nodes[2]);
             least.x <= high.x && least.y <= high.y && most.x >= low.x && most.y >= low.y
         };
-        let mut segments = Vec::new();
-        for row in 0..self.count[1] {
+        let edges = (0..self.count[1]).flat_map(move |row| {
             let start = row as usize * self.count[0] as usize;
             let columns = self.columns_near(self.first[1] + row, low, high);
-            for edge in columns
-                .flat_map(|column| (0..3).map(move |side| 3 * (start + column as usize) + side))
-                .map(MeshEdgeId::new)
-            {
-                if near(self.triangle_beside(edge, false)) || near(self.triangle_beside(edge, true)) {
-                    let [a, b] = self.edge_stars(edge).map(|s| self.node(s));
-                    let label = Label { outline: 0, trace: None, mesh: Some(edge), mesh_reversed: false };
-                    segments.push(Segment { a, b, label });
-                }
-            }
-        }
-        segments
+            columns
+                .flat_map(move |column| (0..3).map(move |side| MeshEdgeId::new(3 * (start + column as usize) + side)))
+        });
+        let is_near = move |&edge: &MeshEdgeId| [false, true].iter().any(|&far| near(self.triangle_beside(edge, far)));
+        edges.filter(is_near).map(|edge| {
+            let [a, b] = self.edge_stars(edge).map(|star| self.node(star));
+            Segment { a, b, label: Label { outline: 0, trace: None, mesh: Some(edge), mesh_reversed: false } }
+        })
     }
 }
 

@@ -131,7 +131,7 @@ pub fn arrange_within(segments: &[Segment], tolerance: f64, edges_max: usize) ->
     let copies = Copies::find(segments, traces);
     let mut noder = Noder::new(segments, |s| copies.is_first(s), tolerance, edges_max.min(EDGES_MAX))?;
     let mut report = noder.run()?;
-    let (points, work) = (noder.points, noder.edges);
+    let (points, work) = noder.finish();
     report.traces = vec![TraceLength::default(); traces];
     let Merged { edges, members, fused_length } = merge_coincident(&points, &work);
     report.fused_outline_length = fused_length;

@@ -70,9 +70,9 @@ struct Crossing {
 /// A pass costs what it changes: the first piece of an edge that is split takes its place, and the others are appended.
 /// All that depends on an order takes edges by their rank, so that it is the order of the segments and along each.
 pub(super) struct Noder {
-    pub points: Vec<Point>,
+    points: Vec<Point>,
     /// The edges, in order once the noder has run.
-    pub edges: Vec<WorkEdge>,
+    edges: Vec<WorkEdge>,
     /// Segments at the start, whose first pieces come first among the edges.
     segments: usize,
     /// Rank of each edge behind these.
@@ -156,6 +156,11 @@ impl Noder {
         self.put_in_order();
         let (tolerance, merged_vertices) = (self.tolerance, self.merged);
         Ok(NodingReport { tolerance, passes, merged_vertices, ..Default::default() })
+    }
+
+    /// Points and edges; the search structures are freed.
+    pub fn finish(self) -> (Vec<Point>, Vec<WorkEdge>) {
+        (self.points, self.edges)
     }
 
     /// Finds what splits edges: vertices near them, and crossings only when there are none of those.

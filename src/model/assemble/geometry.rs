@@ -53,6 +53,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     for (trace, (points, _)) in TraceId::all(joints.traces.len()).zip(&joints.traces) {
         segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, Some(trace))));
     }
+    segments.reserve(3 * RegularMesh::cell_estimate(case.mesh.size, low, high) as usize);
     segments.extend(mesh.segments(low, high));
     tell(BuildStage::Arrangement);
     let arranged = arrange_within(&segments, tolerance, demand.edges_max());

@@ -11,8 +11,10 @@ use std::time::{Duration, Instant};
 use crate::parts::{PARTS, Part};
 use crate::{USAGE, say};
 
-/// Wall time after which an input counts as endless, far above what the slowest takes.
+/// Processor time after which an input counts as endless, far above what the slowest takes.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// Times as long, by the clock, that it may take beside other work, or sleep.
+const WAITS_MAX: u32 = 20;
 /// Finds after which there is enough to look at.
 const ENOUGH: usize = 40;
 
@@ -120,7 +122,7 @@ impl Plan {
         let lines = lines_of(child);
         let mut at = None;
         let silent = loop {
-            let line = match lines.recv_timeout(PATIENCE) {
+            let line = match next_line(&lines, child) {
                 Ok(line) => line,
                 Err(why) => break why == RecvTimeoutError::Timeout,
             };
@@ -166,6 +168,27 @@ impl Plan {
         let _ = child.kill();
         child.wait().map(|_| ()).map_err(|error| error.to_string())
     }
+}
+
+/// The next line of a child, waited for until it is silent for too long.
+fn next_line(lines: &Receiver<String>, child: &Child) -> Result<String, RecvTimeoutError> {
+    let before = processor_time(child);
+    for _ in 1..WAITS_MAX {
+        let line = lines.recv_timeout(PATIENCE);
+        let is_over = || processor_time(child).zip(before).is_none_or(|(now, before)| now - before >= PATIENCE);
+        if line != Err(RecvTimeoutError::Timeout) || is_over() {
+            return line;
+        }
+    }
+    lines.recv_timeout(PATIENCE)
+}
+
+/// Processor time of a child so far; none where the system has no such file.
+fn processor_time(child: &Child) -> Option<Duration> {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
+    // User and system time, in hundredths of a second, are the 14th and 15th word; the second one is a name in brackets.
+    let words = stat.rsplit_once(')')?.1.split_whitespace().skip(11).take(2);
+    Some(Duration::from_millis(10 * words.filter_map(|word| word.parse::<u64>().ok()).sum::<u64>()))
 }
 
 /// Lines of the standard output of a child, as they come.
