@@ -71,6 +71,9 @@ pub const ITEMS: [Item; 20] = [
     Item { name: "verify_implicit", quick: false, golden: false, act: Act::Verify("E1") },
 ];
 
+/// Item that takes a third of the time on an emulator, and shows nothing that another continuum does not.
+pub const LONG_EMULATED: &str = "simply_supported_beam";
+
 /// Time (s) without end of the models of `enmm bench`.
 const ENDLESS: &str = "duration = 1e6\n";
 
