@@ -268,16 +268,19 @@ def fos(
     return found
 
 
-def bound(case: CaseLike, output: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+def bound(
+    case: CaseLike, output: str | os.PathLike[str] | None = None, *, stage: str | None = None
+) -> dict[str, Any]:
     """Bounds of the factor of safety by limit analysis, the object of `enmm bound --json`.
 
     `associated`, `level_tops` and `catching` of rigid blocks, and `lower` and `upper` of rock that yields, have
-    `factor` and `end` each, and all but `lower` a `mechanism`. `output` is a directory for
-    `report.html`, which shows the mechanism; without it no page is left. Raises CaseError for a case that limit
-    analysis cannot treat.
+    `factor` and `end` each, and all but `lower` a `mechanism`. `stage` is the static stage after which the slope is
+    looked at. `output` is a directory for `report.html`, which shows the mechanism; without it no page is left. Raises
+    CaseError for a case that limit analysis cannot treat.
     """
+    words = [] if stage is None else ["--stage", stage]
     with case_file(case) as path, tempfile.TemporaryDirectory() as page:
-        return record(["bound", path, "-o", page if output is None else output])
+        return record(["bound", path, "--force", "-o", page if output is None else output, *words])
 
 
 def check(case: CaseLike) -> dict[str, Any]:
