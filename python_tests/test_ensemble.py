@@ -8,6 +8,7 @@ import json
 import math
 import multiprocessing
 import os
+import re
 import signal
 import sqlite3
 import subprocess
@@ -358,6 +359,31 @@ def test_dask_gives_the_same_table(ensemble, variables, table, cluster):
         assert ensemble.run(block(), variables, 8, executor=client, options=QUICK)._csv() == table
     by_address = ensemble.run(block(), variables, 8, executor=cluster.scheduler_address, options=QUICK)
     assert by_address._csv() == table
+
+
+@pytest.mark.parametrize("way", ["threads", "dask"])
+def test_trials_verdicts_and_the_running_probability_show(
+    ensemble, variables, table, cluster, way, monkeypatch, capsys
+):
+    from enmm import _progress
+    from distributed import Client
+
+    monkeypatch.setattr(_progress, "_PAUSE", 0.0)
+    if way == "dask":
+        with Client(cluster) as client:
+            found = ensemble.run(block(), variables, 8, executor=client, options=QUICK, progress=True)
+    else:
+        found = ensemble.run(block(), variables, 8, options=QUICK, progress=True)
+    lines = [line.strip() for line in capsys.readouterr().err.split("\r")]
+    assert found._csv() == table
+    assert lines[-1] == "", "the line goes away"
+    done = [re.match(r"(\d+) of 8 samples \(factor of safety\), (\d+) below the limit \((\d\.\d+)\)", line) for line in lines]
+    done = [match for match in done if match]
+    assert {int(match[1]) for match in done} == set(range(1, 9))
+    assert all(abs(float(match[3]) - int(match[2]) / int(match[1])) < 1e-3 for match in done)
+    assert int(done[-1][2]) == found.failures
+    trials = [re.search(r"sample (\d): trial \d+ of about \d+, F = \d\.\d{4} (stable|unstable|caught)$", line) for line in lines]
+    assert {int(match[1]) for match in trials if match} == set(range(8)), "each sample shows its trials"
 
 
 def test_a_local_cluster_of_dask_gives_the_same_table(ensemble, variables, table):

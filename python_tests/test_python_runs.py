@@ -1,6 +1,7 @@
 """Cases, runs, factors of safety and pickling from Python, and the wheel that brings them."""
 
 import json
+import re
 import math
 import os
 import pickle
@@ -200,6 +201,42 @@ def test_factor_of_safety_of_a_block_is_the_closed_form(package, case):
         assert [picture.name for picture in found.pictures] == ["failure.png", "fos.png"]
     assert package.bound(case)["level_tops"]["factor"] == pytest.approx(exact, rel=1e-6)
     assert package.check(case)["blocks"] == 2
+
+
+def test_a_search_lets_a_caller_hear_its_trials(package, case):
+    heard = []
+    with package.fos(case, pictures=False, progress=heard.append) as found:
+        assert len(heard) == found.trials.rows
+        for line in heard:
+            factor, verdict = re.fullmatch(r"trial \d+ of about \d+, F = ([\d.]+) (\w+)", line).groups()
+            place = np.argmin(np.abs(found.trials["factor"] - float(factor)))
+            assert found.trials["verdict"][place] == verdict
+    assert package.fos(case, pictures=False, progress=False).factor == found.factor
+
+
+def test_results_have_the_look_of_tables_in_notebooks(package, case, short_case, tmp_path, monkeypatch):
+    with package.fos(case, stage=None) as found:
+        page = found._repr_html_()
+        assert f"{found.factor:.4f}" in page and "data:image/png;base64," in page and "level_tops" not in page
+        assert f"{found.bound['level_tops']['factor']:.6g}" in page
+        opened = []
+        monkeypatch.setattr("webbrowser.open", opened.append)
+        found.show()
+        assert opened == [found.report.absolute().as_uri()]
+    table = found.trials._repr_html_()
+    assert "<th scope=\"col\">factor" in table and table.count("<tr>") == 1 + min(found.trials.rows, 10)
+    with package.fos(case, pictures=False) as plain:
+        assert "<img" not in plain._repr_html_()
+        with pytest.raises(package.InvalidArgumentError, match="report.html"):
+            plain.show()
+    with package.run(short_case, progress=False) as result:
+        page = result._repr_html_()
+        assert "stage slide" in page and "2</td>" in page and "data:image/png;base64," in page
+    assert "associated" in package.bound(case)._repr_html_()
+    checked = package.check(case)
+    assert f"<td style=\"text-align:left\">{checked['blocks']}</td>" in checked._repr_html_()
+    hostile = package.Case.from_dict({**case.to_dict(), "title": "<script>alert(1)</script>"})
+    assert "<script>" not in hostile._repr_html_() and "&lt;script&gt;" in hostile._repr_html_()
 
 
 def test_a_search_without_pictures_finds_the_same(package, case, tmp_path):

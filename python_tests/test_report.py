@@ -7,6 +7,7 @@ import json
 import re
 import shutil
 import subprocess
+import time
 import urllib.error
 import urllib.request
 
@@ -301,6 +302,78 @@ def test_picture_and_table_hold_what_is_shown(report, results):
     for mine, theirs in zip(table[1:], rows[1:]):
         assert all(close(float(a), float(b)) for a, b in zip(mine, theirs))
     quiet(report)
+
+
+def test_the_film_button_saves_what_plays(report, tmp_path):
+    report.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path / "saved"))
+    assert not report.run("document.getElementById('save-film').hidden"), "Chromium can record"
+    report.run("document.getElementById('save-film').click()")
+    assert report.run("document.getElementById('save-film').disabled && enmm.player.playing")
+    report.wait("!document.getElementById('save-film').disabled")
+    assert report.run("enmm.player.time === enmm.film.end")
+    until = time.monotonic() + 20
+    while not (saved := list((tmp_path / "saved").glob("*.webm"))) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert [path.name for path in saved] == ["short.webm"]
+    film = saved[0].read_bytes()
+    assert film.startswith(b"\x1aE\xdf\xa3") and re.search(rb"V_(VP8|VP9|AV1|MPEG4)", film), "a film of pictures"
+    # The pictures differ: a browser plays the film, and the slope is elsewhere at its end.
+    shown = """(async () => {
+        const video = document.createElement('video');
+        video.src = URL.createObjectURL(new Blob([Uint8Array.from(atob('%s'), (c) => c.charCodeAt(0))]));
+        video.muted = true;
+        await new Promise((good, bad) => { video.onloadeddata = good; video.onerror = bad; });
+        const pen = Object.assign(document.createElement('canvas'), { width: 64, height: 64 }).getContext('2d');
+        const grab = () => { pen.drawImage(video, 0, 0, 64, 64); return pen.getImageData(0, 0, 64, 64).data.join(); };
+        const first = grab();
+        video.play();
+        await new Promise((done) => { video.onended = done; });
+        return [video.videoWidth, video.videoHeight, first !== grab()];
+    })()""" % base64.b64encode(film).decode()
+    size = report.run("[document.getElementById('slope').width, document.getElementById('slope').height]")
+    report.call("Page.navigate", url="about:blank")
+    width, height, differ = report.run(shown)
+    # Encoders take even sizes.
+    assert abs(width - size[0]) <= 1 and abs(height - size[1]) <= 1 and differ
+
+
+@pytest.fixture
+def edited(short_case, tmp_path):
+    """`enmm edit` on a copy of the short case: the file and the address of its page."""
+    case = tmp_path / "edited.toml"
+    case.write_text(short_case.read_text())
+    command = [from_environment("ENMM_BIN"), "edit", case]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        yield case, re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline()).group()
+        process.terminate()
+
+
+def test_the_editor_keeps_the_part_in_sight_at_each_save(edited, page):
+    case, address = edited
+    page.call("Page.navigate", url=address)
+    page.wait("document.body?.dataset.shown === '1'")
+    model = "document.querySelector('#model iframe').contentWindow.enmm"
+    whole = page.run(f"{model}.sight()")
+    assert whole["part"] is None
+    page.run(f"{model}.slope.zoom(3, 40, 60); {model}.slope.pan(25, -10); {model}.refresh()")
+    page.run(f"{model}.switchTheme()")
+    before, origin = page.run(f"{model}.sight()"), page.run(f"{model}.film.shape.originX")
+    assert before["part"]["scale"] > 0 and before["theme"] != whole["theme"]
+    text = case.read_text()
+    # More rock moves the origin of the film.
+    case.write_text(text.replace("[6, 0], [6, 1]", "[9, 0], [9, 1]"))
+    page.wait("document.body.dataset.shown === '2'")
+    page.painted()
+    after = page.run(f"{model}.sight()")
+    assert page.run(f"{model}.film.shape.originX") != origin
+    for name, value in before["part"].items():
+        assert after["part"][name] == pytest.approx(value, rel=1e-12, abs=1e-9)
+    assert (after["colour"], after["theme"]) == (before["colour"], before["theme"])
+    page.run(f"{model}.slope.fit()")
+    case.write_text(text)
+    page.wait("document.body.dataset.shown === '3'")
+    assert page.run(f"{model}.sight()")["part"] is None, "the whole slope stays the whole slope"
+    assert page.errors == []
 
 
 def test_a_hostile_title_stays_text(enmm, page, tmp_path, short_case):

@@ -25,7 +25,7 @@ fn built(joints: &[[[f64; 2]; 2]], more: &str) -> Simulation {
 const CROSSING: [[[f64; 2]; 2]; 3] = [[[0.0, 3.0], [10.0, 3.0]], [[5.0, 0.0], [5.0, 6.0]], [[2.0, 6.04], [8.04, 0.0]]];
 
 #[test]
-fn a_crumb_joins_the_neighbour_along_its_longest_face() {
+fn a_crumb_joins_a_neighbour() {
     let kept = built(&CROSSING, "[mesh]\nsize = 1.0\nleast_block = 0");
     let simulation = built(&CROSSING, "[mesh]\nsize = 1.0");
     let blocks = |simulation: &Simulation| simulation.model().covers.block_count();
@@ -41,16 +41,22 @@ fn a_crumb_joins_the_neighbour_along_its_longest_face() {
     );
 }
 
-/// The face along the slanting joint is the longest: the crumb joins the block beyond it.
+/// The upright joint is the shortest of the three, 6 m: the crumb joins the block beyond it, and both longer ones stay
+/// whole.
 #[test]
 fn areas_and_masses_stay_and_no_other_joint_goes() {
     let simulation = built(&CROSSING, "[mesh]\nsize = 1.0");
     let covers = &simulation.model().covers;
     let area: f64 = covers.element_area.iter().sum();
     assert!((area - 60.0).abs() < 1e-11, "{area}");
-    let beyond = covers.blocks().find(|&b| (covers.block_area(b) - (3.02 * 3.02 / 2.0)).abs() < 1e-9);
-    let joined = beyond.or_else(|| covers.blocks().find(|&b| covers.block_area(b) > 4.0));
-    assert!(joined.is_some());
+    let block = |x: f64, y: f64| {
+        let element = covers.element_near(Point::new(x, y), 0.0).expect("rock");
+        covers.element_block[element]
+    };
+    assert_eq!(block(5.01, 3.01), block(4.9, 3.02), "across the upright joint");
+    for (x, y) in [(5.01, 2.9), (5.2, 3.1)] {
+        assert_ne!(block(x, y), block(4.9, 3.02), "the longer joints stay");
+    }
     let kept = built(&CROSSING, "[mesh]\nsize = 1.0\nleast_block = 0");
     let length = |simulation: &Simulation| -> f64 {
         let lists = simulation.built().noding.traces.iter();

@@ -1,11 +1,15 @@
-//! Blocks too small to stand alone: each joins the neighbour with which it shares the longest face.
+//! Blocks too small to stand alone: each joins the neighbour across its shortest joint. Across a long one, such as the
+//! fault on which a slope slides, it would stay behind as a lip that holds the rock above.
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{Arrangement, FaceId, GeometryError, HalfEdgeId, Point, polygon};
+use crate::geometry::{Arrangement, FaceId, GeometryError, HalfEdgeId, Point, TraceId, polygon};
 
 use super::outlines::mesh_only;
 use super::union_find::UnionFind;
+
+/// Share of the longest face of a crumb below which another face holds it too loosely.
+const FACE_SHARE: f64 = 0.25;
 
 /// A block below the least area.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,18 +104,40 @@ impl Blocks {
 struct Joined {
     sets: UnionFind<FaceId>,
     area: BTreeMap<FaceId, f64>,
-    /// Neighbours of each, and the length (m) of a face that they share.
-    faces: BTreeMap<FaceId, Vec<(FaceId, f64)>>,
+    /// Neighbours of each, with a face that they share.
+    faces: BTreeMap<FaceId, Vec<(FaceId, Face)>>,
+}
+
+/// A face between two blocks.
+#[derive(Clone, Copy, Default)]
+struct Face {
+    /// Its length (m).
+    length: f64,
+    /// Length (m) of the joint that it is a part of, the longest of them.
+    joint: f64,
+}
+
+impl Face {
+    fn and(self, other: Self) -> Self {
+        Self { length: self.length + other.length, joint: self.joint.max(other.joint) }
+    }
 }
 
 impl Joined {
     fn new(arrangement: &Arrangement, blocks: &Blocks) -> Self {
-        let mut faces: BTreeMap<FaceId, Vec<(FaceId, f64)>> = BTreeMap::new();
+        let mut joints: BTreeMap<Option<TraceId>, f64> = BTreeMap::new();
+        let mut parting = Vec::new();
         for (k, edge) in arrangement.edges.iter().enumerate() {
-            let Some([a, b]) = blocks.beside(arrangement, k).filter(|[a, b]| a != b) else { continue };
+            let Some(beside) = blocks.beside(arrangement, k).filter(|[a, b]| a != b) else { continue };
             let length = (arrangement.points[edge.b] - arrangement.points[edge.a]).norm();
-            faces.entry(a).or_default().push((b, length));
-            faces.entry(b).or_default().push((a, length));
+            *joints.entry(edge.label.trace).or_default() += length;
+            parting.push((beside, length, edge.label.trace));
+        }
+        let mut faces: BTreeMap<FaceId, Vec<(FaceId, Face)>> = BTreeMap::new();
+        for ([a, b], length, trace) in parting {
+            let face = Face { length, joint: joints[&trace] };
+            faces.entry(a).or_default().push((b, face));
+            faces.entry(b).or_default().push((a, face));
         }
         Self {
             sets: UnionFind::new(FaceId::all(arrangement.faces.len())),
@@ -120,21 +146,25 @@ impl Joined {
         }
     }
 
-    /// Lets a block join the neighbour with the longest common face unless it has the least area (m²), alone or by what
+    /// Lets a block join the neighbour across the shortest joint, of equal ones along the longest face, unless it has the least area (m²), alone or by what
     /// has joined it; returns whether it is part of a larger block now.
     fn grow(&mut self, block: FaceId, least: f64) -> bool {
         let own = self.sets.root(block);
         if self.area[&own] >= least {
             return true;
         }
-        let mut shared: BTreeMap<FaceId, f64> = BTreeMap::new();
-        for (neighbour, length) in self.faces.get(&own).cloned().unwrap_or_default() {
+        let mut shared: BTreeMap<FaceId, Face> = BTreeMap::new();
+        for (neighbour, face) in self.faces.get(&own).cloned().unwrap_or_default() {
             let neighbour = self.sets.root(neighbour);
             if neighbour != own {
-                *shared.entry(neighbour).or_default() += length;
+                let all = shared.entry(neighbour).or_default();
+                *all = all.and(face);
             }
         }
-        let Some((&other, _)) = shared.iter().max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(a.0))) else {
+        let longest = shared.values().map(|face| face.length).fold(0.0, f64::max);
+        shared.retain(|_, face| face.length >= FACE_SHARE * longest);
+        let shorter = |a: &Face, b: &Face| a.joint.total_cmp(&b.joint).then(b.length.total_cmp(&a.length));
+        let Some((&other, _)) = shared.iter().min_by(|a, b| shorter(a.1, b.1).then(a.0.cmp(b.0))) else {
             return false;
         };
         let area = self.area[&own] + self.area[&other];

@@ -255,7 +255,7 @@ pub struct Mesh {
     /// Node (0, 0) (m).
     #[serde(default)]
     pub origin: [f64; 2],
-    /// Area (m²) below which a block joins the neighbour with which it shares the longest face; default (size/20)², 0
+    /// Area (m²) below which a block joins the neighbour across its shortest joint; default (size/20)², 0
     /// keeps all blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub least_block: Option<f64>,

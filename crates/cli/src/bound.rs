@@ -9,10 +9,11 @@ use enmm_report::PAGE;
 use enmm_run::{BoundFailure, Folder, bound_record, bracket_record, write_bound, write_bound_page, write_bracket_page};
 use enmm_stability::limit_analysis::continuum::{Bracket, TRIANGLES};
 use enmm_stability::limit_analysis::{Bound, Collapse, Factor};
+use enmm_stability::up_to_stage;
 use serde_json::Value;
 
 use crate::case::CaseArguments;
-use crate::run::directory_for;
+use crate::run::{check_folder, directory_for};
 use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Arguments of `enmm bound`.
@@ -24,6 +25,12 @@ pub struct Arguments {
     /// Directory for bound.json and report.html; default: NAME/bound, where NAME is that of the case file.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Look at the slope after this static stage; default: after the last.
+    #[arg(long, value_name = "NAME")]
+    stage: Option<String>,
+    /// Replace results of another case in the directory.
+    #[arg(long)]
+    force: bool,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -80,18 +87,12 @@ impl Found {
 
 /// Finds the bounds of a case, prints them and writes their page.
 pub fn bound(arguments: &Arguments) -> ExitCode {
-    let Arguments { case, output, json, triangles } = arguments;
-    let json = *json;
-    let directory = output.clone().unwrap_or_else(|| directory_for(&case.path, "bound"));
-    let loaded = case.load().map_err(BoundFailure::from);
-    let found = loaded.and_then(|loaded| {
-        let held = Folder::open(&directory, loaded.source.inputs()).map_err(BoundFailure::Directory)?;
-        Found::of(&loaded, *triangles).map(|found| (loaded, held, found))
-    });
-    match found {
+    let json = arguments.json;
+    let directory = arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "bound"));
+    match look(arguments, &directory) {
         Ok((loaded, _held, found)) => {
             print_line(&if json { found.record().to_string() } else { found.text() });
-            let written = write_bound(&directory, &loaded, &found.record());
+            let written = write_bound(&directory, &loaded, arguments.stage.as_deref(), &found.record());
             if let Err(error) = written.and_then(|()| found.write_page(&directory, &loaded)) {
                 return fail(&format!("cannot write results ({error}): choose another directory with -o"), FAILED);
             }
@@ -103,12 +104,21 @@ pub fn bound(arguments: &Arguments) -> ExitCode {
             if json {
                 print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
             }
-            let status =
-                if matches!(error, BoundFailure::Case(_) | BoundFailure::Directory(_)) { BAD_INPUT } else { FAILED };
+            let status = if matches!(error, BoundFailure::Unsolved(_)) { FAILED } else { BAD_INPUT };
             return fail(&error, status);
         }
     }
     ExitCode::SUCCESS
+}
+
+/// The case up to the stage that is looked at, the folder for its results, and its bounds.
+fn look(arguments: &Arguments, directory: &Path) -> Result<(LoadedCase, Folder, Found), BoundFailure> {
+    let mut loaded = arguments.case.load()?;
+    loaded.case = up_to_stage(&loaded.case, arguments.stage.as_deref()).map_err(BoundFailure::Options)?;
+    check_folder(directory, &loaded, arguments.force).map_err(BoundFailure::Owned)?;
+    let held = Folder::open(directory, loaded.source.inputs()).map_err(BoundFailure::Directory)?;
+    let found = Found::of(&loaded, arguments.triangles)?;
+    Ok((loaded, held, found))
 }
 
 fn bracket_text(bracket: &Bracket) -> String {

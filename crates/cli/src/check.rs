@@ -1,8 +1,9 @@
 //! `enmm check`: builds a model and reports on it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::Args;
 use enmm::model::Simulation;
 use enmm_run::check::Check;
 use enmm_run::rock_mass::RockMass;
@@ -10,12 +11,32 @@ use enmm_run::{Folder, Observer};
 
 use crate::case::CaseArguments;
 use crate::progress::Screen;
+use crate::run::check_folder;
 use crate::{BAD_INPUT, FAILED, fail, print_line};
 
+/// Arguments of `enmm check`.
+#[derive(Args)]
+#[command(after_help = "Example: enmm check slope.toml -o slope")]
+pub struct Arguments {
+    #[command(flatten)]
+    case: CaseArguments,
+    /// Directory to draw the model into, as model.png.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Draw into a directory with results of another case.
+    #[arg(long)]
+    force: bool,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
 /// Builds the model of a case, prints what it is, and draws it into a directory if there is one.
-pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> ExitCode {
+pub fn check(arguments: &Arguments) -> ExitCode {
+    let Arguments { ref output, json, .. } = *arguments;
+    let directory = output.as_deref();
     let mut screen = Screen::new(json);
-    let looked = look(case, directory, &mut screen);
+    let looked = look(arguments, &mut screen);
     screen.close();
     let refuse = |error: &dyn std::fmt::Display, status| {
         if json {
@@ -40,12 +61,12 @@ pub fn check(case: &CaseArguments, directory: Option<&Path>, json: bool) -> Exit
 }
 
 /// The model of a case, the folder for its picture, and the report.
-fn look(
-    case: &CaseArguments,
-    directory: Option<&Path>,
-    screen: &mut Screen,
-) -> Result<(Simulation, Option<Folder>, Check), String> {
-    let loaded = case.load().map_err(|error| error.to_string())?;
+fn look(arguments: &Arguments, screen: &mut Screen) -> Result<(Simulation, Option<Folder>, Check), String> {
+    let loaded = arguments.case.load().map_err(|error| error.to_string())?;
+    let directory = arguments.output.as_deref();
+    if let Some(directory) = directory {
+        check_folder(directory, &loaded, arguments.force).map_err(|error| error.to_string())?;
+    }
     let held = directory.map(|directory| Folder::open(directory, loaded.source.inputs())).transpose();
     let held = held.map_err(|error| format!("cannot draw the model ({error}): choose another directory with -o"))?;
     let invalid =

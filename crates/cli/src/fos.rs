@@ -62,6 +62,9 @@ pub struct Arguments {
     /// Print one JSON object, that of fos.json.
     #[arg(long)]
     json: bool,
+    /// Print each trial as a JSON object before that; how the Python package follows a search.
+    #[arg(long, hide = true, requires = "json")]
+    trials: bool,
 }
 
 /// Heads the columns of [`row`].
@@ -101,6 +104,9 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     let search = Search::new(arguments.json);
     let mut hear = |trial: &Trial, progress: Progress| {
         search.trial(progress.trials, progress.expected, || {
+            if arguments.trials {
+                print_line(&trial_line(trial, progress));
+            }
             if progress.trials == 1 && !arguments.json {
                 print_line(HEAD);
             }
@@ -135,6 +141,13 @@ fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -
         print_line(&serde_json::json!({ "error": message.to_string() }).to_string());
     }
     fail(message, status)
+}
+
+/// A trial in words, with its number and about how many there will be, as a JSON object.
+pub fn trial_line(trial: &Trial, progress: Progress) -> String {
+    let Progress { trials, expected } = progress;
+    let text = format!("trial {trials} of about {expected}, F = {:.4} {}", trial.factor, trial.verdict.name());
+    serde_json::json!({ "trial": text, "done": trials, "expected": expected }).to_string()
 }
 
 fn row(t: &Trial, progress: Progress) -> String {

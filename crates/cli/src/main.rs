@@ -21,7 +21,6 @@ mod stereonet;
 mod verify;
 mod view;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -61,17 +60,7 @@ enum Command {
     /// Builds a case, runs all its stages and writes the results.
     Run(run::Arguments),
     /// Builds the model of a case and reports its counts, areas, masses and warnings.
-    #[command(after_help = "Example: enmm check slope.toml -o slope")]
-    Check {
-        #[command(flatten)]
-        case: case::CaseArguments,
-        /// Directory to draw the model into, as model.png.
-        #[arg(short, long, value_name = "DIR")]
-        output: Option<PathBuf>,
-        /// Print one JSON object.
-        #[arg(long)]
-        json: bool,
-    },
+    Check(check::Arguments),
     /// Writes a commented case to begin with.
     New(new::Arguments),
     /// Writes a case for a DXF drawing, with all its layers, and says what is left open.
@@ -120,7 +109,7 @@ fn execute(command: Command) -> ExitCode {
     }
     match command {
         Command::Run(arguments) => run::run(&arguments),
-        Command::Check { case, output, json } => check::check(&case, output.as_deref(), json),
+        Command::Check(arguments) => check::check(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Import(arguments) => import::import(&arguments),
         Command::Fmu(arguments) => fmu::fmu(&arguments),

@@ -15,6 +15,7 @@ use enmm_stability::strength_reduction::{Progress, Trial};
 use serde_json::{Map, Value as Json, json};
 
 use crate::case::CaseArguments;
+use crate::fos::trial_line;
 use crate::progress::Count;
 use crate::run::{INTERRUPT, check_folder, directory_of, interrupt};
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
@@ -228,11 +229,7 @@ fn work_out(arguments: &Arguments, loaded: &LoadedCase, hash: &str) -> ExitCode 
         return ExitCode::SUCCESS;
     }
     let wanted = arguments.output_of.unwrap_or(loaded.case.ensemble.output);
-    let mut hear = |trial: &Trial, progress: Progress| {
-        let Progress { trials, expected } = progress;
-        let text = format!("trial {trials} of about {expected}, F = {:.4} {}", trial.factor, trial.verdict.name());
-        print_line(&json!({ "trial": text }).to_string());
-    };
+    let mut hear = |trial: &Trial, progress: Progress| print_line(&trial_line(trial, progress));
     let row = match arguments.case.load_with(&arguments.value) {
         Ok(sample) => answer(&sample, wanted, &arguments.search(), &mut hear),
         Err(error) => Some(Row { outputs: Vec::new(), message: error.to_string() }),

@@ -20,8 +20,8 @@ pub struct Arguments {
     /// SVG file; default: the case file with `.stereonet.svg`.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Dip and dip direction of the face (degrees), such as 65/120; default: the longest steep edge of the outline,
-    /// normal to the section.
+    /// Dip and dip direction of the face (degrees), such as 65/120; default: that of the outline, normal to the
+    /// section, where its steep edges agree.
     #[arg(long, value_name = "DIP/DIRECTION", value_parser = plane)]
     face: Option<Plane>,
     /// Greatest angle (degrees) between the dip directions of a plane that slides and of the face.
@@ -35,7 +35,11 @@ pub struct Arguments {
     equal_angle: bool,
 }
 
-fn plane(text: &str) -> Result<Plane, String> {
+/// Reads a plane, such as 65/120.
+///
+/// # Errors
+/// What to write.
+pub fn plane(text: &str) -> Result<Plane, String> {
     let parts = text.split_once('/').and_then(|(dip, azimuth)| Some((dip.parse().ok()?, azimuth.parse().ok()?)));
     match parts {
         Some((dip, direction)) if (0.0..=90.0).contains(&dip) && (-360.0..=360.0).contains(&direction) => {

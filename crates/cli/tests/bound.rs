@@ -24,6 +24,29 @@ fn a_block_on_an_incline_is_bounded_by_its_tangents() {
     assert_eq!(files, ["bound.json", "report.html"], "the page holds its film");
 }
 
+/// The rigid wedge of `road_cut` has F = 1.3176 with its bolts and 1.0313 before they are installed.
+#[test]
+fn a_bound_looks_at_the_slope_after_the_stage_that_is_named() {
+    let place = Place::with("");
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
+    for (stage, formula) in [("gravity", 1.0313), ("bolts", 1.3176)] {
+        let answer = place.enmm(&["bound", case, "--stage", stage, "-o", "out"]);
+        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let found = crate::support::json(&place.path("out/bound.json"));
+        let factor = found["bound"]["level_tops"]["factor"].as_f64().expect("a factor");
+        assert!((factor / formula - 1.0).abs() < 1e-3, "{stage}: {factor}");
+        assert_eq!(found["stage"], stage);
+    }
+    let answer = place.enmm(&["report", "out"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let report = std::fs::read_to_string(place.path("out/report_a4.html")).expect("a report");
+    assert!(report.contains("After the stage</th><td>bolts"), "the report does not name the stage");
+    let refused = place.enmm(&["bound", case, "--stage", "quake", "-o", "none"]);
+    assert_eq!(refused.status, Some(2), "{refused:?}");
+    assert!(refused.stderr.contains("gravity, bolts"), "{refused:?}");
+    assert!(!place.path("none").exists());
+}
+
 #[test]
 fn a_block_on_a_level_floor_never_falls() {
     let outline = "[[0, -1], [8, -1], [8, 2], [4, 2], [4, 3], [3, 3], [3, 2], [0, 2]]";

@@ -198,6 +198,7 @@ fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
     let found = json(&place.path("out/fos.json"));
     let factor = found["factor_of_safety"].as_f64().expect("a factor");
     assert!((factor / 1.0313 - 1.0).abs() < 0.005, "{factor}");
+    assert_eq!(found["stage"], "gravity", "a factor without its stage would pass for that of the bolted cut");
     let bolts = found["bolts"].as_array().expect("bolts");
     assert!(bolts.iter().all(|bolt| bolt["state"] == "absent"), "{found}");
     let refused = place.enmm(&["fos", case, "--stage", "quake", "-o", "none"]);

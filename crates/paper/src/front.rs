@@ -50,12 +50,14 @@ fn main_results(records: &Records) -> String {
     if let Some(fos) = &records.fos {
         let failing = &fos.json["failing"];
         rows.push(("Factor of safety F", factor_cell(&fos.json)));
+        rows.push(("F after the stage", text(&fos.json["stage"]).into()));
         rows.push(("Area that fails", plain(&failing["area"], "m²", Digits::Three).into()));
         rows.push(("Mass that fails", mass(&failing["mass"]).into()));
         rows.push(("Factor by limit analysis", limit_factor(&fos.json["bound"])));
     }
     if let Some(bound) = records.bound.as_ref().filter(|_| records.fos.is_none()) {
         rows.push(("Factor by limit analysis", limit_factor(&bound.json["bound"])));
+        rows.push(("F after the stage", text(&bound.json["stage"]).into()));
     }
     if let Some(ensemble) = &records.ensemble {
         rows.push(("Probability of failure", percent(&ensemble.json["probability_of_failure"]).into()));

@@ -138,6 +138,7 @@ pub fn factor_chapter(records: &Records) -> String {
     };
     let rows = [
         ("Factor of safety F", factor_cell(json)),
+        ("After the stage", text(&json["stage"]).into()),
         ("Greatest F at which the slope stands", plain(&bracket["stable"], "", Digits::Typed).into()),
         ("Least F at which it does not", plain(&bracket["unstable"], "", Digits::Typed).into()),
         ("Factor by limit analysis", limit_factor(&json["bound"])),
@@ -197,6 +198,7 @@ pub fn bound_chapter(records: &Records) -> String {
     let bound = &record.json["bound"];
     let rows = [
         ("Factor by limit analysis", side(&bound["level_tops"])),
+        ("After the stage", text(&record.json["stage"]).into()),
         ("Factor if joints dilate by their friction angle", side(&bound["associated"])),
         ("Factor if every corner holds", side(&bound["catching"])),
         ("Lower bound", side(&bound["lower"])),

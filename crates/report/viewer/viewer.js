@@ -463,6 +463,26 @@ class Viewer {
     if (time !== null && time !== "" && Number.isFinite(Number(time))) this.player.seek(Number(time));
   }
 
+  // What a reader has chosen: the part of the section in sight, unless it is the whole slope, colour and theme.
+  sight() {
+    const { camera, fitted } = this.slope,
+      { originX, originY } = this.film.shape;
+    const part = fitted ? null : { x: camera.x + originX, y: camera.y + originY, scale: camera.scale };
+    return { part, colour: this.colour.key, theme: document.documentElement.dataset.theme };
+  }
+
+  // Takes over what was chosen for another model of the section.
+  see({ part, colour, theme }) {
+    const { originX, originY } = this.film.shape;
+    if (part) {
+      this.slope.camera = { x: part.x - originX, y: part.y - originY, scale: part.scale };
+      this.slope.fitted = false;
+    }
+    this.setTheme(theme);
+    by("colours").querySelector(`[data-colour="${CSS.escape(colour)}"]`)?.click();
+    this.refresh();
+  }
+
   listenToPointers() {
     const canvas = by("slope"),
       down = new Map();

@@ -20,6 +20,12 @@ pub enum BoundFailure {
     /// The case cannot be built, or holds what limit analysis cannot treat.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// An option cannot be used.
+    #[error("{0}")]
+    Options(String),
+    /// The directory holds results of another case.
+    #[error("{0}")]
+    Owned(io::Error),
     /// The directory cannot take the page.
     #[error("cannot write the page ({0}): choose another directory with -o")]
     Directory(io::Error),
@@ -55,13 +61,14 @@ fn failure(loaded: &LoadedCase, error: BoundError) -> BoundFailure {
     }
 }
 
-/// Writes `bound.json`: a record of a limit analysis with case, version and input.
+/// Writes `bound.json`: a record of a limit analysis with case, version, input, and the stage after which it is where
+/// one was named.
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
-pub fn write_bound(directory: &Path, loaded: &LoadedCase, bound: &Value) -> io::Result<()> {
+pub fn write_bound(directory: &Path, loaded: &LoadedCase, stage: Option<&str>, bound: &Value) -> io::Result<()> {
     let path = directory.join("bound.json");
-    let record = json!({
+    let mut record = json!({
         "title": loaded.case.title,
         "version": engine_version(),
         "case_file": loaded.source.file(),
@@ -70,6 +77,9 @@ pub fn write_bound(directory: &Path, loaded: &LoadedCase, bound: &Value) -> io::
         "bound": bound,
         "input": input_record(loaded),
     });
+    if let Some(stage) = stage {
+        record["stage"] = json!(stage);
+    }
     let text = serde_json::to_vec_pretty(&record).map_err(io::Error::from).map_err(at_path(&path))?;
     write_atomic(&path, &text)
 }

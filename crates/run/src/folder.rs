@@ -160,7 +160,7 @@ fn held(folder: &Path, lock: &mut File) -> io::Error {
 }
 
 /// Files of results that name their case.
-const RECORDS: [&str; 3] = ["ensemble.json", "fos.json", "summary.json"];
+const RECORDS: [&str; 4] = ["bound.json", "ensemble.json", "fos.json", "summary.json"];
 
 /// Refuses a folder that holds results of another case than the one of a file.
 ///

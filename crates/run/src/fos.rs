@@ -17,7 +17,6 @@ use super::mechanism_page::write_fos_page;
 use super::run::has_run;
 use super::summary::BoltRecord;
 use enmm::engine_version;
-use enmm::model::case::{Case, StageKind};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
@@ -26,6 +25,7 @@ use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, HELD, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
     TOLERANCE, Trial, mechanisms,
 };
+use enmm_stability::up_to_stage;
 
 /// Pictures of the trials and of the mechanism.
 const PICTURES: [&str; 2] = ["fos", "failure"];
@@ -158,7 +158,7 @@ pub fn search(
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Found, FosError> {
     options.check().map_err(FosError::Options)?;
-    let case = case_after(&loaded.case, options.stage.as_deref()).map_err(FosError::Options)?;
+    let case = up_to_stage(&loaded.case, options.stage.as_deref()).map_err(FosError::Options)?;
     let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
     let search = ReductionOptions { low, high, tolerance, interrupt, integrators: &enmm_implicit::Both };
     let mut find = || mechanisms(&case, which, &search, hear);
@@ -176,22 +176,6 @@ pub fn search(
     })?;
     searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
     Ok(Found { searches, which })
-}
-
-/// The case without the stages after one of its static stages.
-fn case_after(case: &Case, stage: Option<&str>) -> Result<Case, String> {
-    let mut case = case.clone();
-    let Some(name) = stage else { return Ok(case) };
-    let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static);
-    let names: Vec<&str> = statics.map(|stage| stage.name.as_str()).collect();
-    let place = names.iter().position(|other| *other == name).ok_or_else(|| {
-        format!(
-            "--stage: there is no static stage {name:?} before the first dynamic one; there are: {}",
-            names.join(", ")
-        )
-    })?;
-    case.stages.truncate(place + 1);
-    Ok(case)
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
@@ -249,6 +233,9 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
     });
     if !loaded.settings.is_empty() {
         record["settings"] = json!(loaded.settings);
+    }
+    if let Some(stage) = &options.stage {
+        record["stage"] = json!(stage);
     }
     if let (Value::Object(record), Value::Object(main)) = (&mut record, main) {
         record.extend(main);

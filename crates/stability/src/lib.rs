@@ -25,6 +25,25 @@ pub fn with_support_forces(case: &Case) -> Case {
     case
 }
 
+/// The case without the stages after one of its static stages; all of it where no stage is named.
+///
+/// # Errors
+/// The name, and those that there are.
+pub fn up_to_stage(case: &Case, stage: Option<&str>) -> Result<Case, String> {
+    let mut case = case.clone();
+    let Some(name) = stage else { return Ok(case) };
+    let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static);
+    let names: Vec<&str> = statics.map(|stage| stage.name.as_str()).collect();
+    let place = names.iter().position(|other| *other == name).ok_or_else(|| {
+        format!(
+            "--stage: there is no static stage {name:?} before the first dynamic one; there are: {}",
+            names.join(", ")
+        )
+    })?;
+    case.stages.truncate(place + 1);
+    Ok(case)
+}
+
 /// The stages of a case that neither method looks at, as a warning; none if there are none, or if the case begins with
 /// one of them and is refused.
 pub fn left_out_stages(case: &Case) -> Option<String> {

@@ -118,6 +118,25 @@ fn limit_analysis_of_the_road_cut_gives_hoek_and_bray() {
     }
 }
 
+/// Joints in the wedge change nothing, except that chips may fall earlier: no network of joints may hold the slope. A
+/// crumb at the toe that joined the rock below the fault did: five of these networks had bounds of 4.6 to 7.3.
+#[test]
+fn no_network_of_joints_holds_the_road_cut() {
+    let all = text("road_cut");
+    let exact = hoek_and_bray(3.0, 3.0 * 250e3 / 2.0);
+    let (mut slides, seeds) = (0, [1, 20, 106, 107, 185, 331, 447, 602, 792].into_iter().chain(2..8));
+    let networks = seeds.map(|seed| {
+        let text = all.replace("seed = 1\n", &format!("seed = {seed}\n"));
+        (seed, text.replace("seed = 2\n", &format!("seed = {}\n", seed + 1)))
+    });
+    for (seed, text) in networks {
+        let found = limit(&text);
+        assert!(found < exact * (1.0 + 3e-4), "seed {seed}: {found} is above {exact}");
+        slides += usize::from(found > exact * (1.0 - 3e-4));
+    }
+    assert!(slides > 10, "{slides} of 15 networks slide as a whole");
+}
+
 /// Both static stages end at rest, and the bolts move the crest by less than a millimetre.
 #[test]
 fn the_road_cut_rests_before_and_after_bolting() {

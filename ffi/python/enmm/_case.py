@@ -1,5 +1,6 @@
 """Cases: what a user writes, as text and as a table of values."""
 
+import html
 import os
 import tomllib
 from collections.abc import Mapping
@@ -149,6 +150,10 @@ class Case:
 
     def __hash__(self) -> int:
         return hash(_toml.dumps(_sorted(self._table)))
+
+    def _repr_html_(self) -> str:
+        title, text = html.escape(self.title or "Case"), html.escape(self.to_toml())
+        return f"<details><summary>{title}</summary><pre>{text}</pre></details>"
 
     def __repr__(self) -> str:
         tables = ", ".join(name for name in self._table if name != "title")

@@ -8,13 +8,15 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from ._case import Case
 from ._errors import CaseError, CaseFileError, LibraryError, Status, StepError
+from ._html import Record
 from ._library import _folders
 
 _VARIABLE = "ENMM_PROGRAM"
@@ -61,17 +63,23 @@ def case_file(case: CaseLike) -> Iterator[Path]:
         yield path
 
 
-def call(words: Sequence[object], *, show: bool = False, given: str | None = None) -> tuple[int, str, str]:
+Hear = Callable[[str], bool]
+"""Is called with each line as it is printed; whether the line is used up."""
+
+
+def call(
+    words: Sequence[object], *, show: bool = False, given: str | None = None, hear: Hear | None = None
+) -> tuple[int, str, str]:
     """Runs the program; returns its exit status, standard output and error. An interrupt is passed on to it.
 
-    `given` is its standard input.
+    `given` is its standard input. `hear` is called with each line of both outputs, unless errors are shown.
     """
     stream = None if show else subprocess.PIPE
     command = [str(program()), *map(str, words)]
     source = subprocess.PIPE if given is not None else None
     with subprocess.Popen(command, stdin=source, stdout=subprocess.PIPE, stderr=stream, encoding="utf-8") as process:
         try:
-            out, error = process.communicate(given)
+            out, error = process.communicate(given) if hear is None else _listen(process, hear)
         except KeyboardInterrupt:
             if sys.platform != "win32":
                 process.send_signal(signal.SIGINT)  # The program then writes its checkpoint.
@@ -80,16 +88,31 @@ def call(words: Sequence[object], *, show: bool = False, given: str | None = Non
     return process.returncode, out, error or ""
 
 
-def record(words: Sequence[object]) -> dict[str, Any]:
+def _listen(process: "subprocess.Popen[str]", hear: Hear) -> tuple[str, str]:
+    """What a process prints until it ends, without the lines that are used up."""
+    kept: tuple[list[str], list[str]] = ([], [])
+
+    def read(stream: IO[str] | None, lines: list[str]) -> None:
+        lines.extend(line for line in stream or () if not hear(line.rstrip("\n")))
+
+    reader = threading.Thread(target=read, args=(process.stderr, kept[1]), daemon=True)
+    reader.start()
+    read(process.stdout, kept[0])
+    process.wait()
+    reader.join()
+    return "".join(kept[0]), "".join(kept[1])
+
+
+def record(words: Sequence[object], hear: Hear | None = None) -> Record:
     """Runs a command that prints one JSON object; raises what it reports as an error."""
-    status, out, error = call([*words, "--json"])
+    status, out, error = call([*words, "--json"], hear=hear)
     try:
         found = json.loads(out)
     except ValueError:
         found = {"error": message_of(status, error)}
     if isinstance(found, dict) and "error" in found:
         raise failure(status, str(found["error"]))
-    return dict(found)
+    return Record(found)
 
 
 def message_of(status: int, error: str) -> str:

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _html
+
 _HEAD = re.compile(r"(.*?) \[([^\]]*)\]")
 
 
@@ -72,6 +74,9 @@ class Table(Mapping[str, npt.NDArray[Any]]):
     def label(self, name: str) -> str:
         """Name and unit, as on the axis of a plot."""
         return f"{name} ({self.units[name]})" if self.units[name] else name
+
+    def _repr_html_(self) -> str:
+        return _html.columns([self.label(name) for name in self._columns], self._columns, self.rows)
 
     def __repr__(self) -> str:
         return f"<enmm.Table: {self.rows} rows of {', '.join(self._columns)}>"

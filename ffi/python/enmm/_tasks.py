@@ -1,17 +1,21 @@
 """What the program does with a case, as functions: `run`, `fos`, `bound` and `check`."""
 
+import html
 import json
 import os
 import tempfile
 import weakref
+import webbrowser
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Self
 
-from . import _plots
+from . import _html, _plots
 from ._closing import Closing
-from ._errors import EnmmError, Status
+from ._errors import EnmmError, Status, invalid
 from ._frames import Frames
 from ._program import FAILED, INTERRUPTED, CaseLike, call, case_file, failure, message_of, record
+from ._progress import Bar, in_notebook
 from ._table import Table
 
 
@@ -48,6 +52,17 @@ class _Directory(Closing):
         """`report.html`, which opens in a browser; None when this version of the program writes none."""
         path = self.directory / "report.html"
         return path if path.is_file() else None
+
+    def show(self, height: int = 640) -> None:
+        """Shows the page of results: in a frame of a notebook, else in a browser. `height` is that of the frame (px)."""
+        if self.report is None:
+            raise invalid(f"{self.directory}: holds no report.html to show; let `fos` draw its pictures")
+        if in_notebook():
+            from IPython.display import HTML, display
+
+            display(HTML(_html.frame(self.report, height)))
+        else:
+            webbrowser.open(self.report.absolute().as_uri())
 
     def close(self) -> None:
         """Removes the directory if it is a temporary one. What has been read stays."""
@@ -100,6 +115,21 @@ class Result(_Directory):
         Returns the animation of matplotlib; in a notebook show its `to_jshtml()`.
         """
         return _plots.animation(self.frames, field, fps, path)
+
+    def _repr_html_(self) -> str:
+        if not hasattr(self, "summary"):
+            return f"<p>{html.escape(repr(self))}</p>"
+        ends = {True: "at rest", False: "not at rest", None: ""}
+        stages = [
+            (
+                f"stage {stage['name']}",
+                f"{stage['time']:.4g} s, {stage['steps']} steps {ends[stage['converged']]}".strip(),
+            )
+            for stage in self.summary["stages"]
+        ]
+        rows = [("status", self.summary["status"]), ("blocks", str(self.blocks.rows)), *stages]
+        rows += [("warning", text) for text in self.summary.get("warnings", [])]
+        return _html.facts(rows) + _html.picture(self.directory / "deformed.png", "The slope at the end of the run")
 
     def __repr__(self) -> str:
         if not hasattr(self, "summary"):
@@ -183,6 +213,19 @@ class Fos(_Directory):
         """Draws displacement over the factor of every trial by matplotlib; returns the axes."""
         return _plots.trials(self, ax)
 
+    def _repr_html_(self) -> str:
+        low, high = self.bracket
+        named = [("stable at", low), ("not stable at", high), ("at least", self.at_least)]
+        rows = [("factor of safety", "none" if self.factor is None else f"{self.factor:.4f}"), ("status", self.status)]
+        rows += [(name, f"{value:.4f}") for name, value in named if value is not None]
+        rows += [("limit analysis", _of_bound(self.bound))]
+        if self.failing:
+            rows += [
+                ("failing area", f"{self.failing['area']:.3g} m², {100 * self.failing['share']:.3g} % of the free rock")
+            ]
+        rows += [("warning", text) for text in self.warnings]
+        return _html.facts(rows) + _html.picture(self.directory / "failure.png", "The rock that fails")
+
     def __float__(self) -> float:
         if self.factor is None:
             raise ValueError(f"the search ended {self.status}: there is no factor; {self.record['remedy']}")
@@ -195,19 +238,26 @@ class Fos(_Directory):
         return f"<enmm.Fos {self.factor:.4f}: stable at {low:.4f}, not at {high:.4f}>"
 
 
+def _of_bound(bound: dict[str, Any]) -> str:
+    """The factor of limit analysis, or the reason why there is none."""
+    if "refused" in bound:
+        return f"none: {bound['refused']}"
+    return " to ".join(_html.words(bound[name]) for name in ("level_tops", "lower", "upper") if name in bound)
+
+
 def run(
     case: CaseLike,
     output: str | os.PathLike[str] | None = None,
     *,
     threads: int | None = None,
     resume: str | os.PathLike[str] | None = None,
-    progress: bool = False,
+    progress: bool | None = None,
 ) -> Result:
     """Runs all stages of a case and returns what `enmm run` writes.
 
     `output` is the directory of the results; without it they go to a temporary one, which `Result.close` removes.
     `threads` is how many are used, all without it; results do not depend on it. `resume` is a checkpoint to continue
-    from. `progress` shows the progress bar of the program.
+    from. `progress` shows how far the run is: by default in notebooks alone.
 
     Raises CaseError with file, line and key; RunError, with the results so far, when a run fails numerically or does
     not come to a sound end.
@@ -217,12 +267,18 @@ def run(
     words: list[object] = ["-o", directory]
     words += [] if threads is None else ["--threads", threads]
     words += [] if resume is None else ["--resume", resume]
-    words += [] if progress else ["--quiet"]
-    with case_file(case) as path:
-        status, _, error = call(["run", path, "--force", *words], show=progress)
+    show = bool(progress) and not in_notebook()
+    with case_file(case) as path, Bar(None if progress is None else progress and in_notebook()) as bar:
+
+        def hear(line: str) -> bool:
+            bar.say(line, at_once=True)
+            return "  simulated " in line or line.startswith("building the model")
+
+        words += [] if show or bar.shown else ["--quiet"]
+        status, _, error = call(["run", path, "--force", *words], show=show, hear=hear if bar.shown else None)
     if status == 0:
         return result._read() if result else Result(directory)
-    message = message_of(status, error) if error or not progress else "the run failed; see the message above"
+    message = message_of(status, error) if error or not show else "the run failed; see the message above"
     if status not in (FAILED, INTERRUPTED) or not (directory / "summary.json").is_file():
         raise failure(status, message)
     if status == INTERRUPTED:
@@ -242,6 +298,7 @@ def fos(
     mechanisms: int | None = None,
     threads: int | None = None,
     pictures: bool = True,
+    progress: bool | Callable[[str], object] | None = None,
 ) -> Fos:
     """Finds the factor of safety of a case by strength reduction, as `enmm fos` does.
 
@@ -249,7 +306,8 @@ def fos(
     final bracket relative to the factor (0.005 without it). Mechanisms of less rock than `least_area` (m2; 1.5 %
     of the free rock without it) do not count. `stage` is the static stage after which the slope is looked at.
     `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither pictures
-    nor a page are drawn. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are
+    nor a page are drawn. `progress` shows the trials, by default in notebooks alone; a function is called with a line
+    for each instead. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are
     as those of `run`.
 
     Raises CaseError with file, line and key; StepError when the slope does not come to rest before the search.
@@ -260,24 +318,45 @@ def fos(
     options |= {"mechanisms": mechanisms, "threads": threads}
     words = [word for name, value in options.items() if value is not None for word in (f"--{name}", value)]
     words += [] if pictures else ["--no-pictures"]
-    with case_file(case) as path:
-        written = record(["fos", path, "--force", "-o", directory, *words])
+    with case_file(case) as path, Bar(False if callable(progress) else progress) as bar:
+        bar.say("the slope comes to rest before the first trial")
+
+        def hear(line: str) -> bool:
+            trial = _trial(line)
+            if trial is not None and callable(progress):
+                progress(trial["trial"])
+            elif trial is not None:
+                bar.say(trial["trial"], trial["done"] / max(trial["expected"], 1), at_once=True)
+            return trial is not None
+
+        listens = bar.shown or callable(progress)
+        words += ["--trials"] if listens else []
+        written = record(["fos", path, "--force", "-o", directory, *words], hear if listens else None)
     if found is None:
         return Fos(directory)
     found.record = written
     return found
 
 
-def bound(case: CaseLike, output: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+def _trial(line: str) -> dict[str, Any] | None:
+    """A trial that the program prints in one line before its result, which has several."""
+    if not line.startswith('{"'):
+        return None
+    found = json.loads(line)
+    return found if "done" in found and "trial" in found else None
+
+
+def bound(case: CaseLike, output: str | os.PathLike[str] | None = None, *, stage: str | None = None) -> dict[str, Any]:
     """Bounds of the factor of safety by limit analysis, the object of `enmm bound --json`.
 
     `associated`, `level_tops` and `catching` of rigid blocks, and `lower` and `upper` of rock that yields, have
-    `factor` and `end` each, and all but `lower` a `mechanism`. `output` is a directory for
-    `report.html`, which shows the mechanism; without it no page is left. Raises CaseError for a case that limit
-    analysis cannot treat.
+    `factor` and `end` each, and all but `lower` a `mechanism`. `stage` is the static stage after which the slope is
+    looked at. `output` is a directory for `report.html`, which shows the mechanism; without it no page is left. Raises
+    CaseError for a case that limit analysis cannot treat.
     """
+    words = [] if stage is None else ["--stage", stage]
     with case_file(case) as path, tempfile.TemporaryDirectory() as page:
-        return record(["bound", path, "-o", page if output is None else output])
+        return record(["bound", path, "--force", "-o", page if output is None else output, *words])
 
 
 def check(case: CaseLike) -> dict[str, Any]:

@@ -48,7 +48,7 @@ fn note_of_crumbs(crumbs: &[Crumb]) -> Option<String> {
     let blocks = if crumbs.len() == 1 { "block has" } else { "blocks have" };
     (!crumbs.is_empty()).then(|| {
         format!(
-            "{} {blocks} less than the least area and joined the neighbour along the longest face: {}{more}; \
+            "{} {blocks} less than the least area and joined the neighbour across their shortest joint: {}{more}; \
              mesh.least_block = 0 keeps each",
             crumbs.len(),
             named.join(", ")

@@ -10,6 +10,7 @@ use enmm::model::Simulation;
 use enmm::model::case::Invalid;
 use enmm_io::LoadedCase;
 use enmm_run::{NetOptions, apparent, stereonet, write_model_page};
+use enmm_stability::kinematics::Plane;
 
 use super::shown::Shown;
 use crate::case::CaseArguments;
@@ -18,7 +19,7 @@ use crate::case::CaseArguments;
 const BOUND: &str = "limit analysis";
 
 /// Builds the model of a case and shows it, or the error and the model before. Returns the files that were read.
-pub fn build(case: &CaseArguments, shown: &Shown, bounds: &BoundDesk) -> Option<Vec<PathBuf>> {
+pub fn build(case: &CaseArguments, face: Option<Plane>, shown: &Shown, bounds: &BoundDesk) -> Option<Vec<PathBuf>> {
     let start = Instant::now();
     let loaded = case.load().map_err(|error| error.to_string());
     let inputs = loaded.as_ref().ok().map(|loaded| {
@@ -28,7 +29,7 @@ pub fn build(case: &CaseArguments, shown: &Shown, bounds: &BoundDesk) -> Option<
     match loaded.and_then(|loaded| Ok((pictured(&loaded)?, loaded))) {
         Ok((pictured, loaded)) => {
             let mut number = 0;
-            let net = stereonet(&loaded, &NetOptions::default());
+            let net = stereonet(&loaded, &NetOptions { face, ..NetOptions::default() });
             let (net, refused) = match net {
                 Ok(net) => (Some((net.picture().svg(), net.findings(&net.failures()))), None),
                 Err(message) => (None, Some(format!("no stereonet: {message}"))),

@@ -11,10 +11,12 @@ use std::time::{Duration, SystemTime};
 
 use clap::Args;
 use enmm_report::{Server, Source};
+use enmm_stability::kinematics::Plane;
 
 use self::build::{BoundDesk, build};
 use self::shown::Shown;
 use crate::case::CaseArguments;
+use crate::stereonet::plane;
 use crate::{BAD_INPUT, FAILED, fail, print_line};
 
 /// Pause between two looks at the files of the case.
@@ -29,11 +31,15 @@ pub struct Arguments {
     /// Port; 0 takes one that is free.
     #[arg(long, default_value_t = 0)]
     port: u16,
+    /// Dip and dip direction of the face (degrees) in the stereonet, such as 65/120; default: that of the outline,
+    /// where its steep edges agree.
+    #[arg(long, value_name = "DIP/DIRECTION", value_parser = plane)]
+    face: Option<Plane>,
 }
 
 /// Serves the page of a case to browsers on this machine, until it is interrupted. Nothing is written beside the case.
 pub fn edit(arguments: Arguments) -> ExitCode {
-    let Arguments { case, port } = arguments;
+    let Arguments { case, port, face } = arguments;
     if !case.path.is_file() {
         let place = case.path.display();
         return fail(&format!("{place} is no file: name a case file, as `enmm new slope` writes it"), BAD_INPUT);
@@ -45,7 +51,7 @@ pub fn edit(arguments: Arguments) -> ExitCode {
     };
     let outcome = server.address().and_then(|address| {
         print_line(&format!("open http://{address}/ in a browser; Ctrl-C ends this"));
-        thread::Builder::new().name("build".to_owned()).spawn(move || watch(&case, &shown))?;
+        thread::Builder::new().name("build".to_owned()).spawn(move || watch(&case, face, &shown))?;
         server.run()
     });
     match outcome {
@@ -55,7 +61,7 @@ pub fn edit(arguments: Arguments) -> ExitCode {
 }
 
 /// Builds the model each time that a file of the case has changed, without end.
-fn watch(case: &CaseArguments, shown: &Arc<Shown>) {
+fn watch(case: &CaseArguments, face: Option<Plane>, shown: &Arc<Shown>) {
     let bounds = BoundDesk::open(shown);
     let mut files = vec![case.path.clone()];
     let mut seen = Vec::new();
@@ -63,7 +69,7 @@ fn watch(case: &CaseArguments, shown: &Arc<Shown>) {
         let stamps = stamps(&files);
         if stamps != seen {
             // A file that changes during the build is seen again, since its stamp was taken before.
-            if let Some(inputs) = build(case, shown, &bounds) {
+            if let Some(inputs) = build(case, face, shown, &bounds) {
                 seen = if inputs == files { stamps } else { Vec::new() };
                 files = inputs;
             } else {

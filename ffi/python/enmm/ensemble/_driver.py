@@ -13,15 +13,18 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import ExitStack
+from functools import partial
 from typing import Any, NamedTuple
 
 from .._case import Case
 from .._errors import invalid
 from .._library import load_library
 from .._program import CaseLike
+from .._progress import Bar
 from ._outputs import DECIDING, NAMES, Answer, Output, evaluate
 from ._sampling import Identity, draw_with_keys
 from ._screen import screened
+from ._shown import DaskTrials, Shown, TrialHeard
 from ._store import Row, Store
 from ._summary import Ensemble, wilson
 from ._variables import Distribution, Seeds, Variable
@@ -56,7 +59,7 @@ def run(
     interval: float | None = None,
     options: Mapping[str, Any] | None = None,
     retry_failed: bool = False,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
 ) -> Ensemble:
     """Draws `n` samples of a case with uncertain values and works out one output of each.
 
@@ -75,8 +78,10 @@ def run(
     ensembles may share the file. A function is known to the store by its name, so take another file when you change it.
 
     `method` is "monte_carlo" or "latin_hypercube". `correlations` maps pairs of keys to the correlation of the normal
-    variables behind them (Gaussian copula). `progress` is called with the number of samples done, and how many are
-    wanted; with `output` "failure" it begins again for each of the bounds, the searches and the trials.
+    variables behind them (Gaussian copula). `progress` shows, by default in notebooks alone, how many samples are done
+    and below the limit, the slowest, the time left, and the last trial of those that threads of this process or Dask
+    work out. A function is called with the number of samples done, and how many are wanted, instead. With `output`
+    "failure" both begin again for each of the bounds, the searches and the trials.
 
     Samples whose case has no answer are stored as failed, counted in `Ensemble.failed` and warned of; `retry_failed`
     works them out again. Raises EnsembleError when workers were lost again and again.
@@ -95,8 +100,10 @@ def run(
             "samples of a Latin hypercube are no sample of the whole"
         )
     with ExitStack() as stack:
+        bar = stack.enter_context(Bar(False if callable(progress) else progress))
+        shown = Shown(bar, limit, progress if callable(progress) else None)
         answers = _Answers(stack, base, _Draw(variables, n, seed, method, correlations or {}), executor, store)
-        answers.retry_failed, answers.progress = retry_failed, progress
+        answers.retry_failed, answers.shown, answers.hears = retry_failed, shown, bar.shown
         rows: list[Row] = []
         margin = None
         while len(rows) < n:
@@ -151,7 +158,11 @@ class _Answers:
         self.samples: list[dict[str, Any]] = []
         """The values of the samples, once one has been asked for."""
         self.retry_failed = False
-        self.progress: Callable[[int, int], object] | None = None
+        self.shown: Shown | None = None
+        """What shows how far the work is."""
+        self.hears = False
+        """Whether it shows trials."""
+        self._trials: TrialHeard | None = None
 
     def find(self, places: Iterable[int], output: Output, options: dict[str, Any]) -> list[Row]:
         """One output of some samples, in their order."""
@@ -159,17 +170,39 @@ class _Answers:
         rows = self._store.find(keys[k] for k in places)
         again = [k for k in places if keys[k] in rows and self.retry_failed and rows[keys[k]].status == "failed"]
         wanted = [k for k in places if keys[k] not in rows] + again
-        done = len(places) - len(wanted)
+        shown = self.shown
+        if shown is not None:
+            there = [rows[keys[k]] for k in set(places).difference(wanted)]
+            shown.begin(_name(output), DECIDING.get(_name(output)), there, len(places))
         if wanted and self._pool is None:
             self._pool = self._stack.enter_context(_pool(self._executor))
-        for k, answer in _answers(self._pool, sorted(wanted), lambda k: (self._case, self.samples[k], output, options)):
+            self._trials = self._listen(self._pool)
+
+        def job(k: int) -> tuple[Any, ...]:
+            hear = None if self._trials is None else partial(self._trials, k)
+            return self._case, self.samples[k], output, options, hear
+
+        for k, answer in _answers(self._pool, sorted(wanted), job):
             row = Row("failed" if answer.message else "done", answer.outputs, answer.message)
             self._store.add(keys[k], k, self.samples[k], row, answer.seconds, self._version)
             rows[keys[k]] = row
-            done += 1
-            if self.progress is not None:
-                self.progress(done, len(places))
+            if shown is not None:
+                shown.note(k, row, answer.seconds)
         return [rows[keys[k]] for k in places]
+
+    def _listen(self, pool: Any) -> TrialHeard | None:
+        """What workers call with their trials; none where they cannot be heard."""
+        if self.shown is None or not self.hears:
+            return None
+        if isinstance(pool, ThreadPoolExecutor):
+            return self.shown.trial
+        # That of a client of Dask.
+        client = getattr(pool, "_client", None)
+        if client is None or not hasattr(client, "subscribe_topic"):
+            return None
+        trials = DaskTrials()
+        self._stack.callback(trials.subscribe(client, self.shown.trial))
+        return trials
 
     def _keys_of(self, output: Output, options: dict[str, Any]) -> list[str]:
         """Keys of all samples in the store."""

@@ -30,19 +30,25 @@ class Answer(NamedTuple):
     seconds: float
 
 
-def evaluate(case: Case, values: dict[str, Any], output: Output, options: dict[str, Any]) -> Answer:
-    """Works out one sample. A case without an answer is an answer too; all else is raised, and may be tried again."""
+def evaluate(
+    case: Case,
+    values: dict[str, Any],
+    output: Output,
+    options: dict[str, Any],
+    hear: Callable[[str], None] | None = None,
+) -> Answer:
+    """Works out one sample; `hear` is called with a line for each of its trials. A case without an answer is an answer too; all else is raised, and may be tried again."""
     start = time.perf_counter()
     try:
-        outputs = _outputs(case.with_values(values), output, options)
+        outputs = _outputs(case.with_values(values), output, options, hear)
         return Answer(outputs, "", time.perf_counter() - start)
     except (CaseError, StepError, InvalidArgumentError, _tasks.RunError) as error:
         return Answer({}, str(error), time.perf_counter() - start)
 
 
-def _outputs(case: Case, output: Output, options: dict[str, Any]) -> dict[str, Any]:
+def _outputs(case: Case, output: Output, options: dict[str, Any], hear: Callable[[str], None] | None) -> dict[str, Any]:
     if output == "factor_of_safety":
-        with _tasks.fos(case, threads=1, pictures=False, **options) as found:
+        with _tasks.fos(case, threads=1, pictures=False, progress=hear or False, **options) as found:
             return _of_fos(found)
     if isinstance(output, str):
         collapse = _tasks.bound(case)[output]

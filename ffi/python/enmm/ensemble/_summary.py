@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .. import _plots
+from .. import _html, _plots
 from .._case import Case
 from .._errors import invalid
 from .._table import Table
@@ -209,6 +209,16 @@ class Ensemble:
 
     def __len__(self) -> int:
         return len(self.values)
+
+    def _repr_html_(self) -> str:
+        page = _html.facts(self._facts())
+        try:
+            from matplotlib.figure import Figure
+        except ImportError:
+            return page
+        shapes = Figure(figsize=(8, 5), layout="constrained")
+        self.plot(shapes.subplots())
+        return page + _html.png(base64.b64decode(_png(shapes)), f"Histogram of {self.output}")
 
     def __repr__(self) -> str:
         low, high = self.interval()

@@ -1,0 +1,83 @@
+"""Results as HTML, for notebooks."""
+
+import base64
+import html
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+_ROWS = 10
+"""Rows of a table that are shown."""
+
+
+class Record(dict[str, Any]):
+    """A dict with the look of a table in notebooks: what the program prints as one JSON object."""
+
+    def _repr_html_(self) -> str:
+        return facts((name.replace("_", " "), words(value)) for name, value in self.items())
+
+
+def words(value: Any) -> str:
+    """A value in a few words: of a collapse its factor, of a long list its length."""
+    match value:
+        case {"factor": factor, "end": end, "limit": limit}:
+            return number(factor) if end == "found" else f"{str(end).replace('_', ' ')} {number(limit)}"
+        case dict():
+            return ", ".join(f"{name} {words(inner)}" for name, inner in value.items())
+        case list() if value and all(isinstance(item, str) for item in value):
+            return "; ".join(value)
+        case list() if len(value) > 4 or any(isinstance(item, dict | list) for item in value):
+            return f"{len(value)} entries"
+        case list():
+            return ", ".join(map(words, value)) or "none"
+        case None:
+            return "none"
+        case _:
+            return number(value)
+
+
+def number(value: Any) -> str:
+    """A number with six digits; any other value as text."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def facts(rows: Iterable[tuple[str, str]]) -> str:
+    """A table of names and values."""
+    cells = "".join(
+        f'<tr><th scope="row" style="text-align:left">{html.escape(name)}</th>'
+        f'<td style="text-align:left">{html.escape(value)}</td></tr>'
+        for name, value in rows
+    )
+    return f"<table>{cells}</table>"
+
+
+def columns(heads: Sequence[str], values: Mapping[str, Any], rows: int) -> str:
+    """The first rows of columns, and how many more there are."""
+    shown = [column[:_ROWS].tolist() for column in values.values()]
+    head = "".join(f'<th scope="col">{html.escape(name)}</th>' for name in heads)
+    lines = "".join(
+        f"<tr>{''.join(f'<td>{html.escape(number(value))}</td>' for value in row)}</tr>"
+        for row in zip(*shown, strict=True)
+    )
+    more = f"<p>… {rows - _ROWS} more rows</p>" if rows > _ROWS else ""
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{lines}</tbody></table>{more}"
+
+
+def picture(path: Path, words: str) -> str:
+    """A picture of the program in the page; nothing where it was not drawn."""
+    if not path.is_file():
+        return ""
+    return png(path.read_bytes(), words)
+
+
+def png(data: bytes, words: str) -> str:
+    """A PNG in the page."""
+    source = base64.b64encode(data).decode()
+    return f'<img alt="{html.escape(words)}" style="max-width:46em;width:100%" src="data:image/png;base64,{source}">'
+
+
+def frame(page: Path, height: int) -> str:
+    """A page of results in a frame, which needs no file beside it."""
+    source = html.escape(page.read_text(encoding="utf-8"), quote=True)
+    style = f"width:100%;height:{height}px;border:0"
+    return f'<div><iframe title="Results of enmm" style="{style}" srcdoc="{source}"></iframe></div>'
