@@ -146,8 +146,8 @@ impl Joined {
         }
     }
 
-    /// Lets a block join the neighbour across the shortest joint, of equal ones along the longest face, unless it has the least area (m²), alone or by what
-    /// has joined it; returns whether it is part of a larger block now.
+    /// Lets a block join the neighbour across the shortest joint, of equal ones along the longest face, unless it has
+    /// the least area (m²), alone or by what has joined it; returns whether it is part of a larger block now.
     fn grow(&mut self, block: FaceId, least: f64) -> bool {
         let own = self.sets.root(block);
         if self.area[&own] >= least {
