@@ -77,3 +77,16 @@ fn wrong_arguments_exit_with_2() {
     }
     assert_eq!(place.names(), ["case.toml"]);
 }
+
+/// The base of the block on an incline ends at the face through (8, 0) and (4, 2): a monitor beside it has rock nearby.
+#[test]
+fn a_point_in_the_air_is_led_to_the_rock() {
+    let monitor = "[[monitor]]\nname = \"m\"\npoint = [8.5, 0.3]\n";
+    let place = Place::with(&crate::support::incline(0.65, monitor));
+    let answer = place.enmm(&["check", "case.toml"]);
+    answer.assert_bad_input(&[
+        "monitor[0].point",
+        "there is no rock at (8.5, 0.3)",
+        "the rock is nearest at (8.000000, 0",
+    ]);
+}

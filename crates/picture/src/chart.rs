@@ -6,7 +6,7 @@ use enmm_io::numbers::superscript;
 use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number};
 use super::colour::{GREY, INK, LINES, WHITE};
 use super::history::thinned;
-use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, wrapped};
 
 /// Size of the picture (px).
 const SIZE: [f64; 2] = [860.0, 440.0];
@@ -202,21 +202,6 @@ fn draw_legend(sheet: &mut Sheet, series: &[ChartSeries]) {
         }
         y += LINE_HEIGHT - 18.0;
     }
-}
-
-/// The words of a text in lines of at most `width` px at the given size (px); longer words are cut.
-fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if text_width(&format!("{line} {word}"), size) <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(fitted(word, size, width)),
-        }
-    }
-    lines
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::axes::LABEL_SIZE;
 use super::colour::{ACCENT, Colour, GREY, INK, WATER, WHITE};
-use super::sheet::{Path, Pixel, Sheet, Style, TextStyle, fitted};
+use super::sheet::{Path, Pixel, Sheet, Style, TextStyle, fitted, wrapped};
 use super::signs::{self, Held, draw_held};
 use super::slope::{LINE_HEIGHT, MARGIN, WIDTH};
 
@@ -76,6 +76,18 @@ pub enum Sign {
 }
 
 impl Legend {
+    /// With texts that are wider than the column in lines below each other.
+    fn wrapped(self, width: f64) -> Self {
+        let room = |sign: Sign| width - 16.0 - if matches!(sign, Sign::None) { 0.0 } else { SIGN_WIDTH };
+        let lines = |entry: Entry| {
+            let below = if matches!(entry.sign, Sign::None) { Sign::None } else { Sign::Blank };
+            let lines = wrapped(&entry.text, LABEL_SIZE, room(entry.sign));
+            let signs = std::iter::once(entry.sign).chain(std::iter::repeat(below));
+            signs.zip(lines).map(|(sign, line)| Entry::new(sign, line)).collect::<Vec<_>>()
+        };
+        Self { title: self.title, entries: self.entries.into_iter().flat_map(lines).collect() }
+    }
+
     /// With the last lines replaced by their number, if there are too many.
     fn lines(&self) -> usize {
         self.entries.len().min(LINES_MAX)
@@ -95,6 +107,12 @@ impl Legend {
             sheet.text([left, top + LINE_HEIGHT * LINES_MAX as f64], &more, TextStyle::new(LABEL_SIZE).colour(GREY));
         }
     }
+}
+
+/// The columns with their texts wrapped to their width, side by side from `left` on or, from there, below each other.
+pub fn wrapped_columns(legends: Vec<Legend>, left: f64, beside: bool) -> Vec<Legend> {
+    let width = (WIDTH - left - MARGIN) / if beside { 1.0 } else { legends.len().max(1) as f64 };
+    legends.into_iter().map(|legend| legend.wrapped(width)).collect()
 }
 
 /// Height (px) of columns side by side.
@@ -160,4 +178,24 @@ fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
         Sign::Bolt => signs::draw_bolt(sheet, [[left + 4.0, y], [right, y]], Style::line(ACCENT, 2.6)),
     }
     SIGN_WIDTH
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sheet::text_width;
+
+    #[test]
+    fn long_texts_take_lines_below_each_other_and_lose_no_word() {
+        let texts = ["φ 35°, c 1 GPa, t 1 GPa; residual c 0 Pa", "short"];
+        let legend = |sign| Legend { title: "Joints", entries: texts.map(|text| Entry::new(sign, text)).into() };
+        for (sign, indent) in [(Sign::None, 0.0), (Sign::Dot(INK), SIGN_WIDTH)] {
+            let [column] = &wrapped_columns(vec![legend(sign)], WIDTH - MARGIN - 270.0, true)[..] else { panic!() };
+            let lines: Vec<&str> = column.entries.iter().map(|entry| &*entry.text).collect();
+            assert_eq!(lines.join(" "), texts.join(" "));
+            assert!(lines.len() > 2 && lines.iter().all(|line| text_width(line, LABEL_SIZE) <= 270.0 - 16.0 - indent));
+            let signs = column.entries.iter().filter(|entry| !matches!(entry.sign, Sign::None | Sign::Blank)).count();
+            assert_eq!(signs, if indent > 0.0 { 2 } else { 0 }, "one sign for each text");
+        }
+    }
 }

@@ -198,10 +198,11 @@ pub struct SetMark {
 /// and ports; the legend has the strengths.
 pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Picture {
     let model = Model { snapshot, annotations };
-    let legends = model.legends();
     let wide = Rect { left: LEFT, top: TOP, width: WIDTH - MARGIN - LEFT, height: HEIGHT_MAX };
     let view = View::fit(model.bounds(), wide);
     let beside = WIDTH - MARGIN - legend::BESIDE - view.area.right() >= legend::COLUMN;
+    let left = if beside { view.area.right() + legend::BESIDE } else { LEFT };
+    let legends = legend::wrapped_columns(model.legends(), left, beside);
     let below = view.area.bottom() + BELOW_FRAME + LENGTH_ROW;
     let bottom = if beside {
         below.max(TOP + legend::height_beside(&legends))
@@ -213,9 +214,9 @@ pub fn model_picture(snapshot: &Snapshot, annotations: &ModelAnnotations) -> Pic
     model.draw(&mut sheet, &view);
     draw_length(&mut sheet, &view, view.area.bottom() + BELOW_FRAME + 0.6 * LENGTH_ROW);
     if beside {
-        legend::draw_beside(&mut sheet, &legends, [view.area.right() + legend::BESIDE, TOP]);
+        legend::draw_beside(&mut sheet, &legends, [left, TOP]);
     } else {
-        legend::draw_below(&mut sheet, &legends, LEFT, below + 30.0);
+        legend::draw_below(&mut sheet, &legends, left, below + 30.0);
     }
     sheet.finish()
 }

@@ -327,3 +327,18 @@ pub fn fitted(text: &str, size: f64, width: f64) -> String {
     cut.push('…');
     cut
 }
+
+/// The words of a text in lines of at most `width` px at the given size (px); longer words are cut.
+pub fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), size) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(fitted(word, size, width)),
+        }
+    }
+    lines
+}

@@ -69,7 +69,12 @@ impl Locator<'_> {
     pub fn element(&self, key: &str, point: [f64; 2]) -> Result<ElementId, Invalid> {
         self.covers.element_near(Point::from(point), self.tolerance).ok_or_else(|| Invalid {
             key: key.into(),
-            message: format!("there is no rock at ({}, {}): choose a point inside a block", point[0], point[1]),
+            message: format!(
+                "there is no rock at ({}, {}): choose a point inside a block; the rock is nearest at {}",
+                point[0],
+                point[1],
+                self.nearest_outer(Point::from(point))
+            ),
         })
     }
 
@@ -97,19 +102,24 @@ impl Locator<'_> {
         let pieces: Vec<OuterPiece> =
             self.outlines.pieces.iter().filter(on_edge).map(|p| self.outer_piece(p)).collect();
         if pieces.is_empty() {
-            let middle = a + (b - a) / 2.0;
-            let outer = self.outlines.pieces.iter().filter(|piece| piece.opposite.is_none()).map(|piece| piece.a);
-            let near = outer.min_by(|p, q| (p - middle).norm().total_cmp(&(q - middle).norm())).unwrap_or(middle);
+            let near = self.nearest_outer(a + (b - a) / 2.0);
             return Err(Invalid {
                 key: key.into(),
                 message: format!(
                     "no outer boundary of the rock lies on the segment ({}, {})–({}, {}): give two points of one \
-                     straight side of the outline, which is nearest at ({:.6}, {:.6}); y points up",
-                    a.x, a.y, b.x, b.y, near.x, near.y
+                     straight side of the outline, which is nearest at {near}; y points up",
+                    a.x, a.y, b.x, b.y
                 ),
             });
         }
         Ok(pieces)
+    }
+
+    /// Where the outer boundary is nearest to a point: a corner, or where an element ends.
+    fn nearest_outer(&self, point: Point) -> String {
+        let outer = self.outlines.pieces.iter().filter(|piece| piece.opposite.is_none()).map(|piece| piece.a);
+        let near = outer.min_by(|p, q| (p - point).norm().total_cmp(&(q - point).norm())).unwrap_or(point);
+        format!("({:.6}, {:.6})", near.x, near.y)
     }
 
     fn outer_piece(&self, piece: &BoundaryPiece) -> OuterPiece {
