@@ -18,6 +18,7 @@ mod cosimulation;
 mod crossings;
 mod determinism;
 mod fast_failures;
+mod fracture;
 mod fractured_slope;
 mod free_field;
 mod geometry_arrangement;

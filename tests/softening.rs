@@ -106,6 +106,72 @@ fn a_bond_in_shear_has_peak_and_residual_strength_and_the_slip_between() {
     }
 }
 
+/// A stiff block of 1 m under 1 MPa that slides on a plane of 30°, of which 0.3 m are a bridge of 60° and 0.5 MPa.
+fn bridged_box(size: f64, angle: f64) -> String {
+    format!(
+        "title = \"bridged shear\"\n[domain]\noutline = [[-1, -0.1], [2, -0.1], [2, 0], [1, 0], [1, 0.002], \
+         [0, 0.002], [0, 0], [-1, 0]]\njoint_law = \"joint\"\n[mesh]\nsize = {size}\nangle_deg = {angle}\n\
+         origin = [0.0137, 0.0071]\n[[joint]]\npoints = [[0, 0], [0.43, 0]]\n\
+         [[joint]]\npoints = [[0.73, 0], [1, 0]]\n[[bridge]]\npoints = [[0.43, 0], [0.73, 0]]\nlaw = \"rock\"\n\
+         [rock.rock]\ndensity = 1e6\nyoung = 1e14\npoisson = 0.25\n\
+         [joint_law.joint]\nfriction_deg = 30\nnormal_stiffness = 1e11\nshear_stiffness = 1e12\n\
+         [joint_law.rock]\nfriction_deg = 60\nresidual_friction_deg = 30\ncohesion = 0.5e6\nresidual_cohesion = 0\n\
+         tension = 0.4e6\ntension_energy = 50\nshear_energy = 2000\nnormal_stiffness = 1e11\n\
+         shear_stiffness = 1e12\n[gravity]\ny = 0\n[in_situ]\nsxx = 0\nsyy = -1e6\n\
+         [[load]]\nkind = \"pressure\"\nedge = [[0, 0.002], [1, 0.002]]\npressure = 1e6\n\
+         [[fix]]\nblock = [0.5, -0.05]\n[[initial_velocity]]\nblock = [0.5, 0.001]\nvelocity = [1.5, 0]\n\
+         [solver]\nfriction_delay = 0\ndt_max = 5e-7\n[[stage]]\nname = \"slide\"\nkind = \"dynamic\"\n\
+         duration = 1.0\ndamping = 0\n"
+    )
+}
+
+/// Contacts whose faces lie partly on the bridge have its friction on that part alone: the strength is that of both
+/// materials by length, σn·(k·tan 60° + (1 − k)·tan 30°) + k·c, on any mesh.
+#[test]
+fn a_joint_beside_a_bridge_keeps_its_own_friction() {
+    let exact = 1e6 * (0.3 * 60f64.to_radians().tan() + 0.7 * 30f64.to_radians().tan()) + 0.3 * 0.5e6;
+    for (size, angle) in [(0.31, 8.0), (0.2, 21.0), (0.1, 8.0), (0.1, 37.0)] {
+        let mut simulation = simulation(&bridged_box(size, angle));
+        let mut peak = 0.0f64;
+        let holds = |simulation: &Simulation| simulation.state().bonds.iter().any(|bond| bond.lengths[1] > 0.0);
+        while simulation.state().step == 0 || holds(&simulation) {
+            advance(&mut simulation);
+            peak = peak.max(forces(&simulation)[1].abs());
+            assert!(simulation.time() < 0.05, "it holds: {:?}", simulation.state().bonds);
+        }
+        let broken = simulation.state().counters.broken;
+        assert!((broken / 0.3 - 1.0).abs() < 0.02, "{broken} m of 0.3 m broken");
+        (0..20).for_each(|_| advance(&mut simulation));
+        let [normal, shear] = forces(&simulation);
+        let residual = shear.abs() / (normal * 30f64.to_radians().tan());
+        println!("h {size}, {angle}°: peak {:.5}, residual {residual:.8} of the exact one", peak / exact);
+        assert!((peak / exact - 1.0).abs() < 5e-3, "h {size}, {angle}°: {peak} of {exact} N/m");
+        assert!((residual - 1.0).abs() < 1e-3, "h {size}, {angle}°: {residual} of the residual friction");
+    }
+}
+
+/// In a model with a bridge, joints elsewhere have their cohesion and tensile strength from the first step on.
+#[test]
+fn a_bridge_elsewhere_takes_no_strength_from_other_joints() {
+    let text = |bridge: &str| {
+        format!(
+            "title = \"hanging block\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 2], [0, 2]]\njoint_law = \"glue\"\n\
+             [mesh]\nsize = 0.7\n[[joint]]\npoints = [[0, 1], [4, 1]]\n{bridge}[rock.rock]\ndensity = 2600\n\
+             young = 1e9\npoisson = 0.25\n[joint_law.glue]\nfriction_deg = 30\ncohesion = 1e6\nresidual_cohesion = 0\n\
+             tension = 1e6\n[joint_law.rock]\nfriction_deg = 45\ncohesion = 1e7\nresidual_cohesion = 0\ntension = 1e7\n\
+             tension_energy = 1e3\nshear_energy = 1e6\n[in_situ]\nsxx = 0\nsyy = 5e4\nsxy = 2e4\n\
+             [[fix]]\nblock = [1, 1.5]\n[[stage]]\nname = \"hang\"\nkind = \"static\"\nduration = 0.5\n"
+        )
+    };
+    let bridge = "[[bridge]]\npoints = [[2, 1], [2, 2]]\nlaw = \"rock\"\n";
+    for bridge in ["", bridge] {
+        let mut simulation = simulation(&text(bridge));
+        (0..200).for_each(|_| advance(&mut simulation));
+        let lost = simulation.state().contacts.iter().filter(|contact| !contact.intact).count();
+        assert!(lost == 0 && !simulation.state().contacts.is_empty(), "{lost} contacts lost their strength");
+    }
+}
+
 /// A state in the middle of a failure, taken back or read from its bytes, goes on to the same bits.
 #[test]
 fn a_failure_goes_on_to_the_same_bits_after_rollback_and_from_a_checkpoint() {

@@ -166,6 +166,17 @@ impl Boundary {
         [self.edge_covers[edge], self.covers[edge], self.covers[self.after(edge)]].into_iter().flatten()
     }
 
+    /// Edges of both segments that end at a node, from the node before it to the one after it.
+    pub fn edges_about(&self, node: NodeId) -> impl Iterator<Item = EdgeId> {
+        [self.nodes.previous[node], node].into_iter().flat_map(|first| self.segment(first))
+    }
+
+    /// Edges from a node to the next one.
+    pub fn segment(&self, node: NodeId) -> impl Iterator<Item = EdgeId> {
+        let [first, end] = [node, self.nodes.next[node]].map(|node| self.nodes.point[node]);
+        std::iter::successors(Some(first), |&edge| Some(self.after(edge))).take_while(move |&edge| edge != end)
+    }
+
     /// Edges before and after a node on its loop.
     pub fn edges_of_node(&self, node: NodeId) -> [EdgeId; 2] {
         [self.nodes.edge_before[node], self.nodes.point[node]]

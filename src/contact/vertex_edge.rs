@@ -143,6 +143,8 @@ pub struct ContactSetting<'a> {
     pub frames: &'a Frames,
     /// Joint laws.
     pub laws: &'a [JointLaw],
+    /// Law of each joint trace, after switches.
+    pub trace_law: &'a [LawId],
     /// Factor on the strength of all joints.
     pub strength: f64,
     /// Share of the normal force of this step in that which delayed friction feels.
@@ -180,7 +182,14 @@ impl VertexEdge {
     /// Limits of the joint law for the length of the contact.
     #[inline(always)]
     pub fn limits(&self, setting: &ContactSetting) -> Limits {
-        let limits = setting.laws[self.law].limits(self.bonded, self.history.intact).times(setting.strength);
+        let law = &setting.laws[self.law];
+        let is_bond = law.softening.is_some() && self.history.intact;
+        let limits = if is_bond {
+            self.law_of_bond(setting).limits(self.bonded, true)
+        } else {
+            law.limits(self.bonded, self.history.intact)
+        };
+        let limits = limits.times(setting.strength);
         let limits = if self.past > 0.0 { limits.under(self.past) } else { limits };
         if self.delayed { limits.delayed(setting.felt_share, self.history.felt) } else { limits }
     }
@@ -192,7 +201,20 @@ impl VertexEdge {
         if law.softening.is_none() || !self.history.intact {
             return None;
         }
+        let law = self.law_of_bond(setting);
         law.bond(self.stiffness, self.bonded, setting.strength, [self.past, self.history.slip])
+    }
+
+    /// The law of a bond. Where part of the contact lies on another joint, the friction is that of both by length.
+    fn law_of_bond(&self, setting: &ContactSetting) -> JointLaw {
+        let law = setting.laws[self.law];
+        if self.bonded >= self.length {
+            return law;
+        }
+        let boundary = setting.boundary;
+        let traces = boundary.edges_about(self.history.node).filter_map(|edge| boundary.trace[edge]);
+        let beside = traces.map(|trace| setting.trace_law[trace]).find(|&other| other != self.law);
+        beside.map_or(law, |other| law.beside(&setting.laws[other], self.bonded / self.length))
     }
 
     /// Greatest shear force (N/m) under a normal force (N/m, compression positive).

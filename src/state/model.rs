@@ -228,11 +228,11 @@ impl Model {
         &'a self,
         laws: &'a [JointLaw],
         frames: &'a Frames,
-        selection: &SelectionBuffers,
+        selection: &'a SelectionBuffers,
     ) -> ContactSetting<'a> {
-        let SelectionBuffers { strength, felt_share, .. } = *selection;
+        let SelectionBuffers { ref trace_law, strength, felt_share, .. } = *selection;
         let crush_length = self.entrance.crush_floor * self.covers.mesh.size;
-        ContactSetting { boundary: &self.boundary, frames, laws, strength, felt_share, crush_length }
+        ContactSetting { boundary: &self.boundary, frames, laws, trace_law, strength, felt_share, crush_length }
     }
 
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not

@@ -177,6 +177,16 @@ impl JointLaw {
         Limits::MohrCoulomb { friction, cohesion: cohesion * length, tension: tension * length, felt: 0.0 }
     }
 
+    /// This law on a `share` of the length of a contact, and the friction of another one on the rest.
+    pub fn beside(self, other: &Self, share: f64) -> Self {
+        let mean = |own: f64, other: f64| share * own + (1.0 - share) * other;
+        Self {
+            friction: mean(self.friction, other.friction),
+            residual_friction: mean(self.residual_friction, other.residual_friction),
+            ..self
+        }
+    }
+
     /// The bond of a contact whose faces lie along each other over a `length` (m), with springs (N/m per metre), damage
     /// and slip (m) so far, where the strength of all joints is multiplied by a factor; none of joints that do not
     /// soften.

@@ -114,35 +114,49 @@ impl NarrowPhase<'_> {
     }
 
     /// The bond of a contact in the first step: where its faces lie on joints of several laws, the part of its length
-    /// that lies on the bond is bonded.
+    /// that lies on the bond is bonded, and the bond is that of the least cohesion. Without such a part it has the law
+    /// of its faces. Faces at an angle to the edge have no part in it.
     fn first_bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
         let (boundary, node) = (self.rule.boundary, candidate.node);
         let along = |point: EdgeId| self.rule.frames.position(point).dot(&candidate.tangent);
-        let before = boundary.node_before[candidate.edge];
-        let [from, to] = [before, boundary.nodes.next[before]].map(|node| along(boundary.nodes.point[node]));
-        let ends = [boundary.nodes.previous[node], node, boundary.nodes.next[node]].map(|n| boundary.nodes.point[n]);
-        let (mut all, mut soft, mut law) = (0.0, 0.0, None);
-        for pair in ends.windows(2) {
-            let mut edge = pair[0];
-            while edge != pair[1] {
-                let next = boundary.after(edge);
-                let over = along(edge).min(to) - along(next).max(from);
-                let own = boundary.trace[edge].map_or(new.law, |trace| self.trace_law[trace]);
-                if over > 0.0 {
-                    all += over;
-                    if self.laws[own].softening.is_some() {
-                        soft += over;
-                        law = law.or(Some(own));
-                    }
-                }
-                edge = next;
+        let [from, to] = self.faced(candidate, along);
+        let (mut all, mut soft, mut bond, mut plain) = (0.0, 0.0, None::<LawId>, None);
+        for edge in boundary.edges_about(node) {
+            let ends = [edge, boundary.after(edge)];
+            let [start, end] = ends.map(|point| self.rule.frames.position(point));
+            let over = along(ends[0]).min(to) - along(ends[1]).max(from);
+            let is_flush = (start - end).dot(&candidate.tangent) > self.rule.flush_cosine * (start - end).norm();
+            if over <= 0.0 || !is_flush {
+                continue;
+            }
+            let own = boundary.trace[edge].map_or(new.law, |trace| self.trace_law[trace]);
+            all += over;
+            if self.laws[own].softening.is_some() {
+                soft += over;
+                bond = bond.filter(|&law| self.laws[law].cohesion <= self.laws[own].cohesion).or(Some(own));
+            } else {
+                plain = plain.or(Some(own));
             }
         }
-        if all == 0.0 {
-            return new;
+        match bond {
+            Some(law) => BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, ..new },
+            None if self.laws[new.law].softening.is_some() => BondHistory { law: plain.unwrap_or(new.law), ..new },
+            None => new,
         }
-        let Some(law) = law else { return BondHistory { lengths: [new.lengths[0], 0.0], ..new } };
-        BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, ..new }
+    }
+
+    /// Ends of what a node faces along the candidate's edge: the node segment under it, and at a node of the other side
+    /// both segments that end there, since round-off decides which of them is nearer.
+    fn faced(&self, candidate: &ContactCandidate, along: impl Fn(EdgeId) -> f64) -> [f64; 2] {
+        let (nodes, band) = (&self.rule.boundary.nodes, self.rule.constants.corner_tolerance * self.rule.size);
+        let at = |node: NodeId| along(nodes.point[node]);
+        let start = self.rule.boundary.node_before[candidate.edge];
+        let end = nodes.next[start];
+        let ([from, to], place) = ([start, end].map(at), at(candidate.node));
+        if (place - from).abs() < band {
+            return [from.min(at(nodes.previous[start])), to];
+        }
+        if (to - place).abs() < band { [from, to.max(at(nodes.next[end]))] } else { [from, to] }
     }
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch

@@ -72,7 +72,7 @@ pub(super) fn approach<'a>(
     step: &Substep,
     motion: &'a MotionBuffers,
     frames: &'a Frames,
-    selection: &SelectionBuffers,
+    selection: &'a SelectionBuffers,
 ) -> Approach<'a> {
     Approach {
         predicted: &motion.predicted,
