@@ -188,6 +188,37 @@ pub struct Bridge {
     pub law: String,
 }
 
+/// Shape of the cells of a tessellation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum CellShape {
+    /// Polygons of Voronoi: they interlock, so that rock of them is stronger than its joints.
+    Voronoi,
+    /// Triangles between the centres of such polygons: they shear easily along their sides.
+    Trigon,
+}
+
+/// A region that joints divide into cells of one size without a direction: rock as bonded blocks. The same seed gives
+/// the same cells, wherever region and outline end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Tessellation {
+    /// Shape of the cells.
+    pub shape: CellShape,
+    /// Mean distance (m) between the centres of neighbouring polygons, mean side of the triangles.
+    pub size: f64,
+    /// Polygon (m) that the cells fill; its border in the rock is joint as well.
+    pub region: PointList,
+    /// Seed of the generator.
+    #[serde(default)]
+    pub seed: u64,
+    /// Joint law by name, with the strength of the rock; default `domain.joint_law`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<String>,
+}
+
 /// A region in which joints take another law, such as that of weathered rock; joints are divided at its border.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -12,6 +12,7 @@ mod joint_set;
 pub mod key;
 pub mod limits;
 mod orientation;
+pub mod philox;
 mod pictures;
 mod random;
 mod validate;
@@ -27,7 +28,9 @@ pub use expand::{CUT_LAW, Expanded};
 pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
 pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
-pub use joint_set::{AngleDistribution, Bridge, Cut, Distribution, JointSet, LawRegion, Section, Side};
+pub use joint_set::{
+    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, Section, Side, Tessellation,
+};
 pub use orientation::{AZIMUTH, Orientation, Orientations, dip_in_section, trace_angle};
 pub use pictures::{PictureKind, Pictures};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
@@ -64,6 +67,9 @@ pub struct Case {
     /// Generated joint sets.
     #[serde(default, rename = "joint_set")]
     pub joint_sets: Vec<JointSet>,
+    /// Regions of cells that joints part.
+    #[serde(default, rename = "tessellation", skip_serializing_if = "Vec::is_empty")]
+    pub tessellations: Vec<Tessellation>,
     /// Construction joints, along which later stages part the rock.
     #[serde(default, rename = "cut", skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<Cut>,

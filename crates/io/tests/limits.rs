@@ -82,6 +82,12 @@ angle_distribution = "fisher"
 fisher_k = 200.0
 spacing = 4.0
 
+[[tessellation]]
+shape = "trigon"
+size = 2.0
+region = [[12.0, 1.0], [18.0, 1.0], [18.0, 4.0]]
+law = "weak"
+
 [[cut]]
 points = [[0.0, 5.0], [20.0, 5.0]]
 

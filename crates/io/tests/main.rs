@@ -11,3 +11,4 @@ mod key_reference;
 mod limits;
 mod support;
 mod tables;
+mod tessellation;

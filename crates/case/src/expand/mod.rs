@@ -2,9 +2,11 @@
 //! bolt patterns bolts, construction joints joints with a law, K0 a stress. This is the only place that does so.
 
 mod bolts;
+mod cells;
 mod cuts;
 mod in_situ;
 mod joint_sets;
+mod tessellation;
 
 pub use cuts::LAW as CUT_LAW;
 
@@ -33,6 +35,7 @@ impl Case {
         let mut told = Expanded::default();
         self.expand_durations(&Key::root().field("stage"), &mut told)?;
         joint_sets::expand(self, &mut told)?;
+        tessellation::expand(self, &mut told)?;
         cuts::expand(self, &mut told)?;
         in_situ::expand(self)?;
         bolts::expand(self, &mut told)?;
@@ -68,6 +71,7 @@ impl Case {
         let short = [
             ("stage", self.stages.iter().any(|stage| stage.duration_max.is_some())),
             ("joint_set", self.joint_sets.iter().any(unfinished)),
+            ("tessellation", !self.tessellations.is_empty()),
             ("cut", !self.cuts.is_empty()),
             ("in_situ", self.in_situ.as_ref().is_some_and(stress)),
             ("bolt_pattern", !self.bolt_patterns.is_empty()),
