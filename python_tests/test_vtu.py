@@ -13,7 +13,7 @@ POINT_FIELDS = {"displacement": 3, "velocity": 3}
 CELL_FIELDS = ["stress", "stress_xx", "stress_yy", "stress_xy", "principal_max", "principal_min", "mean_stress"]
 CELL_FIELDS += ["max_shear", "block", "rock"]
 JOINT_FIELDS = {"block_1": 1, "block_2": 1, "opening": 1, "slip": 1, "force": 3, "normal_stress": 1, "shear_stress": 1}
-JOINT_FIELDS |= {"normal": 3, "state": 1, "law": 1, "is_joint": 1}
+JOINT_FIELDS |= {"normal": 3, "state": 1, "bond": 1, "law": 1, "is_joint": 1}
 PARTS = {"0": "elements", "1": "joints", "2": "bolts", "3": "supports", "4": "water"}
 
 
@@ -108,6 +108,7 @@ def test_vtk_reads_the_joints(results, entries):
         assert array(grid.GetFieldData(), "TimeValue").tolist() == [time]
         assert component_names(grid, "law_names") == ["plane"]
         assert component_names(grid, "state_names") == ["open", "slip", "lock"]
+        assert component_names(grid, "bond_names") == ["none", "broken", "holds"]
         count = grid.GetNumberOfCells()
         assert {grid.GetCellType(k) for k in range(count)} == {LINE}
         assert grid.GetNumberOfPoints() == 2 * count

@@ -7,6 +7,7 @@ use enmm::geometry::{Point, TraceId, Vector, segment};
 use enmm::model::tables::{Boundary, EdgeId, NodeId, VertexEdge};
 use enmm::model::{ContactState, Quantity, Simulation};
 
+use crate::bonds::{BondState, bond_states};
 use crate::edges::EdgeStates;
 
 /// Overlap of two faces, relative to the shorter edge, below which they do not lie on each other.
@@ -35,6 +36,8 @@ pub struct JointPiece {
     pub shear_stress: f64,
     /// Open, slip or lock.
     pub state: ContactState,
+    /// Whether it is a bond, such as a rock bridge, and whether that holds.
+    pub bond: BondState,
     /// Whether the two faces lay on each other at the start.
     pub is_joint: bool,
 }
@@ -168,11 +171,13 @@ impl Joints {
         for piece in &self.pieces {
             closed[piece.face][usize::from(state(piece) == ContactState::Open)] += length(piece);
         }
+        let bonds = bond_states(simulation);
         let there = |edge: EdgeId| !removed[boundary.block[edge]];
         let mut found: Vec<JointPiece> = Vec::with_capacity(self.pieces.len());
         for piece in self.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)) {
             let mut seen = seen(simulation, &positions, piece);
             seen.state = state(piece);
+            seen.bond = piece.edges.map(|edge| bonds[edge.index()]).into_iter().max().unwrap_or_default();
             // A face that bears without a closed piece bears on all of it.
             let [closed, open] = closed[piece.face];
             let (over, bears) = if closed > 0.0 { (closed, seen.state != ContactState::Open) } else { (open, true) };
@@ -304,6 +309,7 @@ fn seen(simulation: &Simulation, positions: &[Point], piece: &Facing) -> JointPi
         normal_stress: 0.0,
         shear_stress: 0.0,
         state: ContactState::Open,
+        bond: BondState::None,
         is_joint: true,
     }
 }
@@ -325,6 +331,7 @@ fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, u
         normal_stress: touch.load.normal / length,
         shear_stress: touch.load.shear / length,
         state: touch.state,
+        bond: BondState::None,
         is_joint: false,
     }
 }

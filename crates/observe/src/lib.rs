@@ -20,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 mod bolts;
+mod bonds;
 mod edges;
 mod joints;
 mod loops;
@@ -35,6 +36,7 @@ pub use enmm::model::{
 };
 
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
+pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
 pub use joints::{JOINT_QUANTITIES, JointPiece, Joints};
 pub use loops::{loops, node_loops};

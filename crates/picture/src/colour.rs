@@ -29,6 +29,11 @@ pub const LOCK: Colour = Colour(0, 90, 150);
 /// Joints that slip, and tension.
 pub const SLIP: Colour = Colour(213, 94, 0);
 
+/// Rock bridges that hold (bluish green of Okabe and Ito).
+pub const BRIDGE: Colour = Colour(0, 158, 115);
+/// Broken rock bridges (yellow of Okabe and Ito), edged with ink.
+pub const BROKEN: Colour = Colour(240, 228, 66);
+
 /// Soft fills of blocks.
 pub const BLOCKS: [Colour; 8] = [
     Colour(205, 224, 240),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Picture;
 use super::axes::{Bounds, LABEL_SIZE, Ticks, View, is_drawable, number_text, si_text, three_digits};
 use super::bar::{BAR_ROOM, draw_bar};
-use super::colour::{GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
+use super::colour::{BRIDGE, BROKEN, GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
 use super::displacement::draw_length;
 use super::legend::{self, Entry, Legend, Sign};
 use super::model::{BoltMark, draw_bolts, draw_label, draw_water};
@@ -16,8 +16,10 @@ use super::slope::{
     draw_filled, draw_title,
 };
 use enmm::geometry::{Point, Vector};
-use enmm_observe::{BoltCondition, ContactState, JointPiece, Snapshot, stress};
+use enmm_observe::{BoltCondition, BondState, ContactState, JointPiece, Snapshot, stress};
 
+/// Width (px) of rock bridges.
+const BRIDGE_WIDTH: f64 = 5.6;
 /// Height (px) of the frame at most.
 const HEIGHT_MAX: f64 = 780.0;
 /// Height (px) of the notes at the bottom.
@@ -109,6 +111,7 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         lengths[state] += (joint.ends[1] - joint.ends[0]).norm();
         paths.entry(state).or_insert_with(Path::default).line(joint.ends.map(|end| view.pixel(&end)));
     }
+    let bonds = [BondState::Holds, BondState::Broken].map(|state| of_bonds(joints, state, &view));
     let path = |state: ContactState| paths.get(&(state as usize)).cloned().unwrap_or_default();
     let fine = if joints.len() > 6000 { 0.6 } else { 1.0 };
     sheet.sheet.clipped(&view.area, |sheet| {
@@ -116,6 +119,9 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         sheet.path(path(ContactState::Open), Style::line(INK, OPEN_WIDTH * fine));
         sheet.path(path(ContactState::Open), Style::line(WHITE, (OPEN_WIDTH - 2.6) * fine));
         sheet.path(path(ContactState::Slip), Style::line(SLIP, 3.6 * fine));
+        sheet.path(bonds[0].0.clone(), Style::line(BRIDGE, BRIDGE_WIDTH * fine));
+        sheet.path(bonds[1].0.clone(), Style::line(INK, BRIDGE_WIDTH * fine));
+        sheet.path(bonds[1].0.clone(), Style::line(BROKEN, (BRIDGE_WIDTH - 2.4) * fine));
     });
     sheet.decorate();
     let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
@@ -129,11 +135,29 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         entry(ContactState::Open, Sign::Hollow, "open"),
     ];
     let mut legends = vec![Legend { title: "Joints, total length", entries }];
+    let signs =
+        [("bridge that holds", Sign::Line(BRIDGE, BRIDGE_WIDTH)), ("broken bridge", Sign::Line(BROKEN, BRIDGE_WIDTH))];
+    if bonds.iter().any(|(_, length)| *length > 0.0) {
+        let entry = |((name, sign), (_, length)): ((&str, Sign), &(Path, f64))| {
+            Entry::new(sign, format!("{name}: {} m", three_digits(*length)))
+        };
+        legends.push(Legend { title: "Rock bridges", entries: signs.into_iter().zip(&bonds).map(entry).collect() });
+    }
     if stage.bolts.iter().any(|bolt| bolt.condition != BoltCondition::Absent) {
         let entries = vec![Entry::new(Sign::Bolt, "bolt with its tension")];
         legends.push(Legend { title: "Marks", entries });
     }
     sheet.close_with(&legends)
+}
+
+/// Joints whose bond is in a state, and their length (m).
+fn of_bonds(joints: &[JointPiece], state: BondState, view: &View) -> (Path, f64) {
+    let mut found = (Path::default(), 0.0);
+    for joint in joints.iter().filter(|joint| joint.bond == state && joint.ends.iter().all(is_drawable)) {
+        found.0.line(joint.ends.map(|end| view.pixel(&end)));
+        found.1 += (joint.ends[1] - joint.ends[0]).norm();
+    }
+    found
 }
 
 /// Draws the normal and the shear stress on joints, each averaged over a face.

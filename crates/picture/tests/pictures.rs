@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::sample::{Sample, profile, sample};
 use enmm::geometry::{Point, Vector};
 use enmm::model::ContactState;
-use enmm_observe::{Boundary, Polygons, Snapshot};
+use enmm_observe::{BondState, Boundary, Polygons, Snapshot};
 use enmm_picture::{
     ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_contours,
     displacement_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours, model_picture,
@@ -246,6 +246,29 @@ fn states_of_joints_differ_by_the_shape_of_their_lines() {
     assert!(widths.iter().all(|width| picture.svg().contains(width)));
     let lock = slope.joints().iter().filter(|joint| joint.state == ContactState::Lock).count();
     assert!(lock > 0 && picture.svg().contains("lock: "));
+    assert!(!picture.svg().contains("bridge"));
+}
+
+#[test]
+fn rock_bridges_show_which_hold_and_which_have_broken() {
+    let slope = sample(12.0, 6.0);
+    let stage = StageEnd { title: "", caption: String::new(), snapshot: &slope.reference, bolts: &[], water: &[] };
+    let mut joints = slope.joints();
+    let length = |k: usize| (joints[k].ends[1] - joints[k].ends[0]).norm();
+    let broken = length(0) + length(3);
+    (joints[0].bond, joints[3].bond, joints[1].bond) = (BondState::Broken, BondState::Broken, BondState::Holds);
+    let picture = joints_picture(&stage, &joints);
+    check(&picture, "stage_joints_bridges.png");
+    let said = |name: &str| {
+        let text = picture.svg();
+        text.split(name)
+            .nth(1)
+            .and_then(|text| text.split(" m").next())
+            .and_then(|number| number.trim().parse::<f64>().ok())
+            .unwrap_or_default()
+    };
+    assert!((said("broken bridge: ") / broken - 1.0).abs() < 0.01, "{} of {broken} m", said("broken bridge: "));
+    assert!(said("bridge that holds: ") > 0.0);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use enmm::geometry::{Point, Vector};
 use enmm::model::ContactState;
-use enmm_observe::{BoltCondition, Boundary, JointPiece, Polygons, Snapshot};
+use enmm_observe::{BoltCondition, BondState, Boundary, JointPiece, Polygons, Snapshot};
 use enmm_picture::{BoltMark, Held, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
 
 /// Slope profile (m), counter-clockwise.
@@ -165,6 +165,7 @@ impl Sample {
                 normal_stress: -26e3 * (60.0 - ends[0].y),
                 shear_stress: 8e3 * (60.0 - ends[0].y),
                 state: states[k % 3],
+                bond: BondState::None,
                 is_joint: k % 5 > 0,
             }
         };

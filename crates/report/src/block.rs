@@ -13,7 +13,7 @@ pub const QUANTUM: f64 = 1.0 / 131_072.0;
 /// Largest quantum over the largest displacement of a corner in the frame.
 const QUANTUM_OF_MOTION: f64 = 1.0 / 512.0;
 /// Bit of the state of an edge on which the water presses.
-const WET: u8 = 4;
+const WET: u8 = 8;
 /// Smallest quantum over the size of the model: below, single precision of the reference ends.
 const QUANTUM_LEAST: f64 = 1e-12;
 

@@ -115,6 +115,10 @@ pub enum EdgeState {
     Slip,
     /// A joint below its shear limit.
     Lock,
+    /// A joint that softens, such as a rock bridge, and holds.
+    Bridge,
+    /// One that has broken.
+    Broken,
 }
 
 /// A block in a frame.

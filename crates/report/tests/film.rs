@@ -97,7 +97,7 @@ fn compare(found: &Decoded, put: &Moment) {
             assert!(error <= wanted.abs() * if n < 2 { FULL } else { SHORT }, "number {n} of block {k}");
         }
     }
-    let edge = |(&state, &wet): (&EdgeState, &bool)| state as u8 + if wet { 4 } else { 0 };
+    let edge = |(&state, &wet): (&EdgeState, &bool)| state as u8 + if wet { 8 } else { 0 };
     assert_eq!(found.edges, put.edges.iter().zip(&put.wet).map(edge).collect::<Vec<_>>());
     let [x, y] = MONITOR.displacement;
     let [vx, vy] = MONITOR.velocity;

@@ -1,6 +1,6 @@
 // The film: bytes to typed arrays. `format.md` of the crate has the layout.
 
-const MAGIC = "enmmfil2";
+const MAGIC = "enmmfil3";
 const CHUNK_HEADER = 16;
 // Numbers of a block in a frame, in the order of the film, with the bytes that each takes.
 const NUMBERS = [
@@ -22,10 +22,12 @@ const BOLT_NUMBERS = [
   ["uy1", 4],
   ["force", 3],
 ];
-const WET = 4; // Bit of the state of an edge on which water presses.
+const WET = 8; // Bit of the state of an edge on which water presses.
 const OPEN = 1,
   SLIP = 2,
-  LOCK = 3;
+  LOCK = 3,
+  BRIDGE = 4,
+  BROKEN = 5;
 
 // Reads numbers one after the other.
 class Reader {

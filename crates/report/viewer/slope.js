@@ -157,9 +157,9 @@ class Slope {
     over.monitors.forEach((monitor, k) => this.drawMonitor(monitor, k === over.monitor, theme));
   }
 
-  // Edges by state; slipping ones on top. Dashes need blocks of some size to be seen.
+  // Edges by state; slipping ones and bridges on top. Dashes need blocks of some size to be seen.
   drawJoints(frame, theme, side) {
-    for (const state of [OPEN, LOCK, SLIP]) {
+    for (const state of [OPEN, LOCK, SLIP, BRIDGE, BROKEN]) {
       const style = jointStyle(state, theme),
         { pen } = this;
       pen.strokeStyle = style.colour;

@@ -228,7 +228,9 @@ class Viewer {
     const { colour } = this,
       legend = by("legend");
     if (colour.key === "joint") {
-      const styles = [LOCK, SLIP, OPEN].map((state) => jointStyle(state, this.theme));
+      const bridged = this.film.frames.some((frame) => frame.edges?.some((state) => state >= BRIDGE));
+      const states = [LOCK, SLIP, OPEN, ...(bridged ? [BRIDGE, BROKEN] : [])];
+      const styles = states.map((state) => jointStyle(state, this.theme));
       legend.replaceChildren(
         ...styles.map((style) => element("div", {}, line(style.colour, style.width, style.dash), style.name)),
       );

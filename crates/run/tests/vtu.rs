@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::sample::{Sample, sample};
 use enmm::geometry::{Point, Vector};
-use enmm_observe::{BoltCondition, BoltLine, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge};
+use enmm_observe::{BoltCondition, BoltLine, BondState, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge};
 use enmm_run::vtu::{
     Part, PvdWriter, Structures, write_bolts_vtu, write_joints_vtu, write_supports_vtu, write_vtu, write_water_vtu,
 };
@@ -165,7 +165,8 @@ fn stress_is_a_tensor_with_its_principal_values() {
 fn joints_come_back_as_they_were() {
     let path = directory("vtu_joints").join("joints.vtu");
     let slope = small();
-    let joints = slope.joints();
+    let mut joints = slope.joints();
+    (joints[0].bond, joints[1].bond) = (BondState::Broken, BondState::Holds);
     let laws = ["bed & \"cross\" <1>".to_owned(), "weak".to_owned()];
     write_joints_vtu(&joints, &laws, 0.3, &path).unwrap();
     let text = fs::read_to_string(path).unwrap();
@@ -175,6 +176,8 @@ fn joints_come_back_as_they_were() {
     assert!(bytes(&document, "types").iter().all(|&kind| kind == 3));
     assert!(integers(&document, "offsets").into_iter().eq((1..=joints.len() as i64).map(|cell| 2 * cell)));
     assert_eq!(bytes(&document, "state")[..3], [0, 1, 2]);
+    assert_eq!(bytes(&document, "bond")[..3], [1, 2, 0]);
+    assert_eq!(components(&document, "bond_names"), ["none", "broken", "holds"]);
     let of = |part: fn(&JointPiece) -> f64| joints.iter().map(part).collect::<Vec<_>>();
     assert_eq!(numbers(&document, "normal_stress"), of(|joint| joint.normal_stress));
     assert_eq!(numbers(&document, "shear_stress"), of(|joint| joint.shear_stress));

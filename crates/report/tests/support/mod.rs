@@ -91,6 +91,8 @@ impl Slope {
                     EdgeState::Open
                 } else if noise[0] > 0.0 {
                     EdgeState::Slip
+                } else if noise[1] > 0.0 {
+                    EdgeState::Broken
                 } else {
                     EdgeState::Lock
                 });
@@ -197,7 +199,7 @@ pub type Chunk = (String, f64, Vec<u8>);
 
 /// All chunks, read by what `format.md` says alone.
 pub fn chunks(film: &[u8]) -> Vec<Chunk> {
-    assert_eq!(&film[..8], b"enmmfil2");
+    assert_eq!(&film[..8], b"enmmfil3");
     let (mut rest, mut chunks) = (&film[8..], Vec::new());
     while !rest.is_empty() {
         let kind = String::from_utf8(rest[..4].to_vec()).unwrap();

@@ -15,7 +15,7 @@ use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, EdgeId};
 use enmm_io::LoadedCase;
-use enmm_observe::{BlockState, ContactState, node_loops};
+use enmm_observe::{BlockState, BondState, ContactState, bond_states, node_loops};
 use structures::{Beside, bolt_places};
 
 /// A film of a model.
@@ -272,5 +272,10 @@ fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
         Some(ContactState::Slip) => EdgeState::Slip,
         Some(ContactState::Lock) => EdgeState::Lock,
     };
-    enmm_observe::edge_states(simulation).into_iter().map(shown).collect()
+    let with_bond = |(state, bond)| match bond {
+        BondState::None => shown(state),
+        BondState::Holds => EdgeState::Bridge,
+        BondState::Broken => EdgeState::Broken,
+    };
+    enmm_observe::edge_states(simulation).into_iter().zip(bond_states(simulation)).map(with_bond).collect()
 }

@@ -16,7 +16,7 @@ use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm_io::files::{at_path, write_atomic, write_atomic_by};
 use enmm_observe::{
-    BOLT_QUANTITIES, BoltCondition, BoltLine, ContactState, JOINT_QUANTITIES, JointPiece, Joints, Quantity,
+    BOLT_QUANTITIES, BoltCondition, BoltLine, BondState, ContactState, JOINT_QUANTITIES, JointPiece, Joints, Quantity,
     STRESS_QUANTITIES, Snapshot, SupportKind, SupportPoint, WetEdge, bolts, supports, wet_edges,
 };
 
@@ -68,8 +68,9 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
 /// along the joint), both since the start, of what lay face to face then; `force` (N/m, three components) on the first
 /// block, which sums over the pieces of a face to the force on it; `normal_stress` (Pa, tension positive) and
 /// `shear_stress` (Pa), the force on the face over the length of it that is closed; `state` (0 open, 1 slip, 2 lock),
-/// `law` (index of the joint law), `is_joint` (0 for a touched boundary, whose opening and slip are zero), `normal`
-/// (three components, out of the first block). Field data: `TimeValue` (s), `law_names`, `state_names`.
+/// `bond` (0 none, 1 broken, 2 holds, of joints that soften), `law` (index of the joint law), `is_joint` (0 for a
+/// touched boundary, whose opening and slip are zero), `normal` (three components, out of the first block). Field
+/// data: `TimeValue` (s), `law_names`, `state_names`, `bond_names`.
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
@@ -85,11 +86,16 @@ pub fn write_joints_vtu(joints: &[JointPiece], laws: &[String], time: f64, path:
         normal_stress,
         shear_stress,
         Array::bytes("state", joints.iter().map(|joint| state_code(joint.state))),
+        Array::bytes("bond", joints.iter().map(|joint| joint.bond.number())),
         Array::integers("law", joints.iter().map(|joint| joint.law as usize)),
         Array::bytes("is_joint", joints.iter().map(|joint| u8::from(joint.is_joint))),
         Array::vectors("normal", joints.iter().map(|joint| joint.normal)),
     ];
-    let names = vec![Array::names("law_names", laws), Array::names("state_names", &["open", "slip", "lock"])];
+    let names = vec![
+        Array::names("law_names", laws),
+        Array::names("state_names", &["open", "slip", "lock"]),
+        Array::names("bond_names", &BondState::NAMES),
+    ];
     let ends: Vec<Point> = joints.iter().flat_map(|joint| joint.ends).collect();
     lines(time, names, &ends, Vec::new(), cell_data).write(path)
 }
