@@ -13,6 +13,7 @@ use enmm_run::fos::{Found, remedy};
 use enmm_run::summary::BoltRecord;
 use enmm_run::{FosError, FosOptions};
 use enmm_stability::left_out_stages;
+use enmm_stability::limit_analysis::DUCTILE;
 use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
@@ -203,6 +204,9 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
             let [level, associated] =
                 [&bound.level_tops, &bound.associated].map(|collapse| collapse.factor.to_string());
             tell("limit analysis", format!("{level} where level tops pass, {associated} associated"));
+            if bound.softens {
+                tell("", DUCTILE.to_owned());
+            }
         }
         (None, Err(refused)) => tell("limit analysis", format!("none: {refused}")),
     }

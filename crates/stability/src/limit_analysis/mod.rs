@@ -95,6 +95,9 @@ pub struct Collapse {
     pub mechanism: Vec<MovingBlock>,
 }
 
+/// How joints that soften count, beside each bound of a case that has them.
+pub const DUCTILE: &str = "a bridge counts with its strength: the bound holds for a ductile bridge";
+
 /// Result of limit analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bound {
@@ -117,7 +120,9 @@ pub struct Bound {
     pub corners: usize,
     /// Linear programs that were solved.
     pub programs: usize,
-    /// What the build has changed in the drawing.
+    /// Whether joints soften, so that [`DUCTILE`] holds.
+    pub softens: bool,
+    /// What the build has changed in the drawing, and how bridges count.
     pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
@@ -203,6 +208,9 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
         false => search.limit_near(&both, None).map_err(unsolved)?,
     };
     let collapse = |limit: &Limit| collapse(&simulation, &program.bodies, limit);
+    let built = simulation.built();
+    let softens = built.traces.iter().any(|(_, law)| simulation.model().laws[*law].softening.is_some());
+    let ductile = softens.then(|| DUCTILE.to_owned());
     Ok(Bound {
         associated: collapse(&associated),
         level_tops: collapse(&choice.limit),
@@ -213,7 +221,8 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
         points: counts.1,
         corners: counts.2,
         programs: search.programs,
-        notes: simulation.built().notes.clone(),
+        softens,
+        notes: built.notes.iter().cloned().chain(ductile).collect(),
         warnings,
     })
 }
