@@ -36,6 +36,7 @@ mod d3;
 mod d4;
 mod d5;
 mod d6;
+mod d7;
 mod e1;
 mod e2;
 mod f1;
@@ -93,6 +94,7 @@ pub const ALL: &[Problem] = &[
     d4::PROBLEM,
     d5::PROBLEM,
     d6::PROBLEM,
+    d7::PROBLEM,
     e1::PROBLEM,
     e2::PROBLEM,
     f1::PROBLEM,
