@@ -190,3 +190,17 @@ fn every_example_names_its_schema() {
         assert!(folder().join(schema).is_file(), "{}: {schema}", path.display());
     }
 }
+
+/// Bridges of the step path: the more brittle, the less they hold together; the rain breaks all of them.
+#[test]
+fn long_the_step_path_has_the_factors_of_its_page_and_breaks_in_the_rain() {
+    let ductile = text("step_path");
+    let brittle = ductile.replace("tension_energy = 20\n", "").replace("shear_energy = 500", "shear_energy = 1");
+    assert!((limit(&ductile) - 1.87).abs() < 0.01, "{}", limit(&ductile));
+    let [soft, hard] = [&ductile, &brittle].map(|text| factor(text));
+    assert!((soft - 1.38).abs() < 0.01 && (hard - 1.04).abs() < 0.01, "{soft} and brittle {hard}");
+    let mut simulation = simulation(&ductile);
+    run_all(&mut simulation);
+    let broken = simulation.state().counters.broken;
+    assert!((broken - 2.79).abs() < 0.01, "{broken} m broken");
+}

@@ -14,12 +14,13 @@ const LINKED: [&str; 6] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "includ
 /// A run that draws contours.
 const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
 /// Pictures of the tutorials: command, case, picture of its results, and its name in `docs/book/pictures`.
-const PICTURES: [[&str; 4]; 10] = [
+const PICTURES: [[&str; 4]; 11] = [
     ["run", "road_cut", "stage2_joints.png", "road_cut_joints.png"],
     [CONTOURS, "road_cut", "stage1_displacement_contours.png", "road_cut_displacement.png"],
     [CONTOURS, "road_cut", "stage2_mean_stress_contours.png", "road_cut_mean_stress.png"],
     ["fos", "road_cut", "fos.png", "road_cut_fos.png"],
     ["fos", "road_cut", "failure.png", "road_cut_failure.png"],
+    ["run", "step_path", "stage2_joints.png", "step_path_joints.png"],
     ["run", "toppling", "stage1_joints.png", "toppling_joints.png"],
     ["run", "toppling", "deformed.png", "toppling_deformed.png"],
     ["run", "pit", "deformed.png", "pit_deformed.png"],
