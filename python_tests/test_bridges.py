@@ -9,8 +9,8 @@ import pytest
 from fmu_support import Fmu, bits
 from test_ctypes_life import fingerprint
 
-H = 0.01
-STEPS = 40
+H = 0.001
+STEPS = 300
 # A block on a plane of 40 degrees with three bridges, which break one after the other while a force grows.
 CASE = """
 title = "Bridges that break"
@@ -28,7 +28,7 @@ bridge = [
 ]
 rock.r = { density = 2600, young = 10e9, poisson = 0.25 }
 joint_law.joint.friction_deg = 30
-solver.communication_step = 0.01
+solver.communication_step = 0.001
 gravity = { x = 6.3, y = -7.5 }
 fix = [{ block = [5, -1] }]
 [joint_law.rock]
@@ -59,7 +59,7 @@ def case(tmp_path_factory) -> Path:
 
 
 def push(k: int) -> float:
-    return 2e4 * k
+    return 3e3 * k
 
 
 def act(model, first: int, last: int) -> None:

@@ -84,7 +84,8 @@ fn apart(simulation: &Simulation) -> [f64; 2] {
     [way.perp(&along).abs(), way.dot(&along).abs()]
 }
 
-/// Twenty meshes: joints on one line join by shear of the bridge, and a step that the motion opens by tension across it.
+/// Twenty meshes: joints on one line join by shear of the bridge, and a step that the motion opens by tension across
+/// it.
 #[test]
 fn joints_on_a_line_join_by_shear_and_opening_steps_by_tension() {
     for seed in 0..20 {

@@ -40,7 +40,7 @@ fn warning(shape: CellShape) -> &'static str {
         CellShape::Voronoi => {
             "cells of Voronoi interlock: the rock is stronger than their joints, and its strength depends on size and \
              seed of the cells. Properties of joints that were published for other cells do not transfer: find them \
-             anew with tests on these cells"
+             by tests on these cells"
         }
         CellShape::Trigon => {
             "triangles shear too easily along their sides: the rock is weaker in shear than their joints let one \

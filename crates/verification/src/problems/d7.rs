@@ -61,7 +61,8 @@ fn text(setup: &Setup, k: f64, middle: f64, rock: f64, energies: &str) -> String
          [{LENGTH:?}, 0.0], [{LENGTH:?}, {height:?}], [0.0, {height:?}], [0.0, 0.0], [-4.0, 0.0]]\n\
          joint_law = \"joint\"\n[mesh]\nsize = {:?}\nangle_deg = {:?}\n[[joint]]\n\
          points = [[0.0, 0.0], [{from:?}, 0.0]]\n[[joint]]\npoints = [[{to:?}, 0.0], [{LENGTH:?}, 0.0]]\n\
-         [[bridge]]\npoints = [[{from:?}, 0.0], [{to:?}, 0.0]]\nlaw = \"rock\"\n[rock.rock]\ndensity = {DENSITY:?}\nyoung = 30e9\npoisson = 0.25\n[joint_law.joint]\n\
+         [[bridge]]\npoints = [[{from:?}, 0.0], [{to:?}, 0.0]]\nlaw = \"rock\"\n\
+         [rock.rock]\ndensity = {DENSITY:?}\nyoung = 30e9\npoisson = 0.25\n[joint_law.joint]\n\
          friction_deg = {phi:?}\n[joint_law.rock]\nfriction_deg = {rock:?}\ncohesion = {c:?}\nresidual_cohesion = 0.0\n\
          tension = {:?}\n{energies}[gravity]\nx = {:?}\ny = {:?}\n[[fix]]\nblock = [5.0, -1.0]\n[[stage]]\n\
          name = \"rest\"\nkind = \"static\"\nduration = 5.0\n",
