@@ -186,7 +186,7 @@ fn next_line(lines: &Receiver<String>, child: &Child) -> Result<String, RecvTime
 /// Processor time of a child so far; none where the system has no such file.
 fn processor_time(child: &Child) -> Option<Duration> {
     let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
-    // User and system time, in hundredths of a second, are the 14th and 15th word; the second one is a name in brackets.
+    // User and system time, in hundredths of a second, are the 14th and 15th word; the second is a name in brackets.
     let words = stat.rsplit_once(')')?.1.split_whitespace().skip(11).take(2);
     Some(Duration::from_millis(10 * words.filter_map(|word| word.parse::<u64>().ok()).sum::<u64>()))
 }

@@ -78,7 +78,7 @@ usage: cargo xtask TASK
 fn profile(words: &[&str]) -> Profile {
     match words {
         ["install", "--debug", ..] => Profile::Tested,
-        ["test" | "python" | "ensembles" | "long" | "fuzz" | "faults", ..] => Profile::Tested,
+        ["test" | "python" | "ensembles" | "long" | "fuzz" | "faults" | "bits" | "pictures", ..] => Profile::Tested,
         _ => Profile::Shipped,
     }
 }
