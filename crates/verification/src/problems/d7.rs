@@ -112,7 +112,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     }
     rows.push(ledger_row(&reductions.iter().collect::<Vec<_>>()));
     let plots = vec![trial_plot("Trials with a ductile bridge", &reductions[0], equal), shares(setup)];
-    Ok(Outcome { rows, plots, ..Outcome::default() })
+    Ok(Outcome { rows, plots })
 }
 
 /// Jennings' factor over the share of rock, with equal and with different friction.
