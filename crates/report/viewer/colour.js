@@ -49,7 +49,7 @@ function jointStyle(state, theme) {
   if (state === LOCK) return { name: "locked", colour: OKABE_ITO[theme.dark ? 1 : 4], width: 1.6, dash: [] };
   if (state === SLIP) return { name: "slipping", colour: OKABE_ITO[5], width: 4, dash: [] };
   if (state === BRIDGE) return { name: "bridge that holds", colour: OKABE_ITO[2], width: 5, dash: [] };
-  if (state === BROKEN) return { name: "broken bridge", colour: OKABE_ITO[0], width: 5, dash: [2, 3] };
+  if (state === BROKEN_BRIDGE) return { name: "broken bridge", colour: OKABE_ITO[0], width: 5, dash: [2, 3] };
   return { name: "open", colour: OKABE_ITO[6], width: 2.2, dash: [5, 4] };
 }
 

@@ -27,7 +27,7 @@ const OPEN = 1,
   SLIP = 2,
   LOCK = 3,
   BRIDGE = 4,
-  BROKEN = 5;
+  BROKEN_BRIDGE = 5;
 
 // Reads numbers one after the other.
 class Reader {

@@ -159,7 +159,7 @@ class Slope {
 
   // Edges by state; slipping ones and bridges on top. Dashes need blocks of some size to be seen.
   drawJoints(frame, theme, side) {
-    for (const state of [OPEN, LOCK, SLIP, BRIDGE, BROKEN]) {
+    for (const state of [OPEN, LOCK, SLIP, BRIDGE, BROKEN_BRIDGE]) {
       const style = jointStyle(state, theme),
         { pen } = this;
       pen.strokeStyle = style.colour;

@@ -229,7 +229,7 @@ class Viewer {
       legend = by("legend");
     if (colour.key === "joint") {
       const bridged = this.film.frames.some((frame) => frame.edges?.some((state) => state >= BRIDGE));
-      const states = [LOCK, SLIP, OPEN, ...(bridged ? [BRIDGE, BROKEN] : [])];
+      const states = [LOCK, SLIP, OPEN, ...(bridged ? [BRIDGE, BROKEN_BRIDGE] : [])];
       const styles = states.map((state) => jointStyle(state, this.theme));
       legend.replaceChildren(
         ...styles.map((style) => element("div", {}, line(style.colour, style.width, style.dash), style.name)),
