@@ -126,6 +126,11 @@ impl State {
         model.dt - self.part
     }
 
+    /// Contacts whose bond still has strength, with it.
+    pub fn held_bonds(&self) -> impl Iterator<Item = (&ContactHistory, &BondHistory)> {
+        self.contacts.iter().zip(&self.bonds).filter(|(contact, bond)| contact.intact && bond.lengths[1] > 0.0)
+    }
+
     /// Copies another state of the same model without allocating. Every field is named here, so that none is forgotten.
     pub fn copy_from(&mut self, other: &Self) {
         let Self {

@@ -49,9 +49,7 @@ fn note_broken(model: &Model, state: &mut State, time: f64) {
     held.resize(model.trace_law.len(), false);
     let softens = |law: LawId| state.laws[law].softening.is_some();
     let mut holds = vec![false; held.len()];
-    let bonds =
-        state.contacts.iter().zip(&state.bonds).filter(|(contact, bond)| contact.intact && bond.lengths[1] > 0.0);
-    for (contact, bond) in bonds {
+    for (contact, bond) in state.held_bonds() {
         let edges = model.boundary.edges_about(contact.node).chain([contact.edge]);
         for trace in edges.filter_map(|edge| model.boundary.trace[edge]) {
             holds[trace.index()] |= state.law_switch[model.trace_law[trace.index()]] == bond.law;

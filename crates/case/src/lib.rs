@@ -267,6 +267,16 @@ pub struct Mesh {
     pub least_block: Option<f64>,
 }
 
+/// Side over the mesh size of the square that has the default least area of a block.
+const LEAST_RATIO: f64 = 0.05;
+
+impl Mesh {
+    /// Area (m²) below which a block joins a neighbour.
+    pub fn least_block(&self) -> f64 {
+        self.least_block.unwrap_or((LEAST_RATIO * self.size).powi(2))
+    }
+}
+
 /// One joint: a polyline in the reference configuration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

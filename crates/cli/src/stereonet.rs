@@ -38,7 +38,7 @@ pub struct Arguments {
 /// Reads a plane, such as 65/120.
 ///
 /// # Errors
-/// What to write.
+/// The form of a plane, where the text has another one.
 pub fn plane(text: &str) -> Result<Plane, String> {
     let parts = text.split_once('/').and_then(|(dip, azimuth)| Some((dip.parse().ok()?, azimuth.parse().ok()?)));
     match parts {

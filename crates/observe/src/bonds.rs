@@ -38,10 +38,7 @@ pub fn bond_states(simulation: &Simulation) -> Vec<BondState> {
     let start = if state.bonds.is_empty() { BondState::Holds } else { BondState::Broken };
     let of_edge = |edge| if law(edge).is_some_and(|law| softens[law.index()]) { start } else { BondState::None };
     let mut found: Vec<BondState> = boundary.edges().map(of_edge).collect();
-    for (contact, bond) in state.contacts.iter().zip(&state.bonds) {
-        if !contact.intact || bond.lengths[1] <= 0.0 {
-            continue;
-        }
+    for (contact, bond) in state.held_bonds() {
         let under = boundary.segment(boundary.node_before[contact.edge]);
         for edge in boundary.edges_about(contact.node).chain(under).filter(|&edge| law(edge) == Some(bond.law)) {
             found[edge.index()] = BondState::Holds;

@@ -21,9 +21,6 @@ pub(super) struct Plane {
     pub crumbs: Vec<Crumb>,
 }
 
-/// Side over the mesh size of the square that has the default least area of a block.
-const LEAST_RATIO: f64 = 0.05;
-
 fn invalid(key: &str) -> impl FnOnce(GeometryError) -> Invalid + '_ {
     move |error| Invalid { key: key.into(), message: error.to_string() }
 }
@@ -59,8 +56,8 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let arranged = arrange_within(&segments, tolerance, demand.edges_max());
     let arrangement = arranged.map_err(|error| demand.explain(&error))?;
     demand.check_edges(&arrangement)?;
-    let least = case.mesh.least_block.unwrap_or((LEAST_RATIO * case.mesh.size).powi(2));
-    let (mut arrangement, crumbs) = cover::join_crumbs(arrangement, least).map_err(|error| demand.explain(&error))?;
+    let joined = cover::join_crumbs(arrangement, case.mesh.least_block());
+    let (mut arrangement, crumbs) = joined.map_err(|error| demand.explain(&error))?;
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
     report.overlapping_traces.retain(|pair| pair.iter().all(|&t| t.index() < user_traces));

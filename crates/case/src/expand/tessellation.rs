@@ -10,8 +10,6 @@ use crate::{Case, CellShape, JointTrace, Tessellation};
 const CELLS_MAX: f64 = 100_000.0;
 /// Area of a polygon over the square of the distance between centres: that of a regular hexagon.
 const AREA: f64 = 0.866_025_403_784_438_6;
-/// Default of `mesh.least_block` over the square of the mesh size.
-const LEAST_BLOCK: f64 = 1.0 / 400.0;
 /// Pieces shorter than this part of the region are left out.
 const SHORTEST: f64 = 1e-9;
 
@@ -34,7 +32,7 @@ pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
     Ok(())
 }
 
-/// What rock of such cells does otherwise than rock.
+/// How rock of such cells differs from rock.
 fn warning(shape: CellShape) -> &'static str {
     match shape {
         CellShape::Voronoi => {
@@ -72,8 +70,7 @@ fn check(key: &Key, case: &Case, tessellation: &Tessellation) -> Check {
         return fail(&key.field("size"), message);
     }
     let part = if tessellation.shape == CellShape::Trigon { 0.5 } else { 1.0 };
-    let (area, mesh) = (part * AREA * size * size, case.mesh.size);
-    let least = case.mesh.least_block.unwrap_or(LEAST_BLOCK * mesh * mesh);
+    let (area, least) = (part * AREA * size * size, case.mesh.least_block());
     if area < 4.0 * least {
         let message = format!(
             "is {size} m: cells of {area:.3e} m² would join each other, since `mesh.least_block` is {least:.3e} m²; \

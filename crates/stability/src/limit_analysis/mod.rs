@@ -122,7 +122,7 @@ pub struct Bound {
     pub programs: usize,
     /// Whether joints soften, so that [`DUCTILE`] holds.
     pub softens: bool,
-    /// What the build has changed in the drawing, and how bridges count.
+    /// Changes that the build has made in the drawing, and how bridges count.
     pub notes: Vec<String>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
