@@ -1,5 +1,8 @@
 //! Joints that soften take the energy of fracture that their law gives, and have its strength (theory §7).
 
+use std::path::Path;
+
+use enmm::cosimulation::EventKind;
 use enmm::model::Simulation;
 
 use crate::common::{run_stage, simulation};
@@ -148,6 +151,55 @@ fn a_joint_beside_a_bridge_keeps_its_own_friction() {
         assert!((peak / exact - 1.0).abs() < 5e-3, "h {size}, {angle}°: {peak} of {exact} N/m");
         assert!((residual - 1.0).abs() < 1e-3, "h {size}, {angle}°: {residual} of the residual friction");
     }
+}
+
+/// A bridge without energies of fracture breaks at once, over the length that it is drawn with, and that is an event.
+#[test]
+fn a_brittle_bridge_is_as_long_as_it_is_drawn_on_any_mesh() {
+    let most = 1e6 * (0.3 * 60f64.to_radians().tan() + 0.7 * 30f64.to_radians().tan()) + 0.3 * 0.5e6;
+    for (size, angle) in [(0.6, 8.0), (0.31, 8.0), (0.2, 21.0), (0.1, 37.0)] {
+        let text = bridged_box(size, angle).replace("tension_energy = 50\nshear_energy = 2000\n", "");
+        let mut simulation = simulation(&text);
+        let (mut peak, mut broken) = (0.0f64, 0.0);
+        while broken < 0.29 {
+            advance(&mut simulation);
+            peak = peak.max(forces(&simulation)[1].abs());
+            broken = simulation.state().counters.broken;
+            assert!(simulation.time() < 0.05, "{broken} m are broken of {:?}", simulation.state().bonds);
+        }
+        println!("h {size}, {angle}°: peak {:.5} of the greatest, {broken:.4} m broken", peak / most);
+        assert!(
+            peak < 1.005 * most && peak > 1e6 * 30f64.to_radians().tan(),
+            "h {size}, {angle}°: {peak} of {most} N/m"
+        );
+        assert!((broken / 0.3 - 1.0).abs() < 0.02, "{broken} m of 0.3 m broken");
+        (0..20).for_each(|_| advance(&mut simulation));
+        let events = simulation.state().events.list.iter();
+        assert_eq!(events.filter(|event| event.kind == EventKind::Broken).count(), 1);
+        let ledger = simulation.report().ledger;
+        assert!(ledger.residual_relative().abs() < 1e-6, "{}", ledger.residual_relative());
+    }
+}
+
+#[test]
+fn a_stage_does_not_switch_the_law_of_a_bridge() {
+    let text = bridged_box(0.2, 8.0).replace("tension_energy = 50\nshear_energy = 2000\n", "");
+    let text = format!("{text}switch_law = [{{ from = \"rock\", to = \"joint\" }}]\n");
+    let loaded = enmm_io::parse_case(&text, "case.toml", Path::new("")).expect("reads");
+    let refusal = Simulation::new(loaded.case).err().expect("a refusal").to_string();
+    assert!(
+        refusal.contains("stage[0].switch_law[0].from") && refusal.contains("the law of rock bridges"),
+        "{refusal}"
+    );
+}
+
+#[test]
+fn a_bridge_that_keeps_its_cohesion_is_warned_of() {
+    let warned = |text: &str| simulation(text).built().warnings.join("\n");
+    let text = bridged_box(0.2, 8.0).replace("tension_energy = 50\nshear_energy = 2000\n", "");
+    assert!(!warned(&text).contains("residual_cohesion"), "{}", warned(&text));
+    let found = warned(&text.replace("residual_cohesion = 0\n", ""));
+    assert!(found.contains("keep their cohesion of 5.000e5 Pa") && found.contains("`residual_cohesion`"), "{found}");
 }
 
 /// In a model with a bridge, joints elsewhere have their cohesion and tensile strength from the first step on.

@@ -177,6 +177,18 @@ impl JointLaw {
         Limits::MohrCoulomb { friction, cohesion: cohesion * length, tension: tension * length, felt: 0.0 }
     }
 
+    /// Whether no cohesion is lost when it fails.
+    pub fn keeps_cohesion(&self) -> bool {
+        self.residual_cohesion >= self.cohesion
+    }
+
+    /// Whether it has a strength that it loses for good when it breaks, and gains none by that.
+    pub fn breaks(&self) -> bool {
+        let loses = self.tension > 0.0 || !self.keeps_cohesion() || self.friction > self.residual_friction;
+        let gains = self.residual_cohesion > self.cohesion || self.residual_friction > self.friction;
+        self.roughness.is_none() && self.residual_tension == 0.0 && loses && !gains
+    }
+
     /// This law on a `share` of the length of a contact, and the friction of another one on the rest.
     pub fn beside(self, other: &Self, share: f64) -> Self {
         let mean = |own: f64, other: f64| share * own + (1.0 - share) * other;

@@ -12,6 +12,11 @@ pub struct Softening {
     pub shear_energy: f64,
 }
 
+impl Softening {
+    /// All strength is lost at once.
+    pub const AT_ONCE: Self = Self { opening: 0.0, shear_energy: 0.0 };
+}
+
 /// The bond of a contact in a step: forces per metre of depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bond {

@@ -1,8 +1,9 @@
-//! Bonds that soften: what the user should know of their lengths and of the mesh that they break in (theory §7).
+//! Bonds: which laws have them, and what the user should know of their lengths and of the mesh that they break in
+//! (theory §7).
 
-use crate::contact::{JointLaw, LawId};
+use crate::contact::{JointLaw, LawId, Softening};
 use crate::mechanics::Elasticity;
-use crate::model::case::Case;
+use crate::model::case::{Case, Integrator, Invalid};
 use crate::state::Model;
 
 use super::joints::Joints;
@@ -11,6 +12,40 @@ use super::joints::Joints;
 fn plane_modulus(model: &Model) -> f64 {
     let modulus = |rock: &Elasticity| 4.0 * rock.mu * (rock.lambda + rock.mu) / (rock.lambda + 2.0 * rock.mu);
     model.rocks.iter().map(modulus).fold(0.0, f64::max)
+}
+
+/// Makes the laws of rock bridges bonds, so that a bridge is as long as it is drawn on any mesh, and its failure an
+/// event. Without an energy of fracture a bond loses its strength at once.
+///
+/// # Errors
+/// A stage switches such a law, which bonds keep until they break.
+pub(super) fn of_bridges(case: &Case, joints: &Joints, laws: &mut [JointLaw]) -> Result<(), Invalid> {
+    if case.solver.integrator == Integrator::Implicit {
+        return Ok(());
+    }
+    for &bridge in &joints.bridges {
+        let law = &mut laws[joints.traces[bridge].1.index()];
+        if law.softening.is_none() && law.breaks() {
+            law.softening = Some(Softening::AT_ONCE);
+        }
+    }
+    let names: Vec<&String> = case.joint_laws.keys().collect();
+    for (k, stage) in case.stages.iter().enumerate() {
+        for (i, switch) in stage.law_switches.iter().enumerate() {
+            let is_bond = |law: usize| laws[law].softening.is_some();
+            if names.binary_search(&&switch.from).is_ok_and(is_bond) {
+                return Err(Invalid {
+                    key: format!("stage[{k}].switch_law[{i}].from"),
+                    message: format!(
+                        "is {:?}, the law of rock bridges, which hold until they break; let them break, give them a law \
+                         of their own, or remove this",
+                        switch.from
+                    ),
+                });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// How many rock bridges there are, and how long they are in all.
@@ -26,7 +61,18 @@ pub(super) fn note(joints: &Joints) -> Option<String> {
 pub(super) fn warnings(case: &Case, model: &Model, joints: &Joints) -> Vec<String> {
     let used = |k: usize| joints.traces.iter().any(|(_, law)| *law == LawId::new(k));
     let laws = case.joint_laws.keys().zip(&model.laws).enumerate();
-    laws.filter(|(k, _)| used(*k)).flat_map(|(_, (name, law))| of_law(name, law, model)).collect()
+    let mut warnings: Vec<String> =
+        laws.clone().filter(|(k, _)| used(*k)).flat_map(|(_, (name, law))| of_law(name, law, model)).collect();
+    let is_of_bridge = |k: usize| joints.bridges.iter().any(|&bridge| joints.traces[bridge].1 == LawId::new(k));
+    let keeps = laws.filter(|(k, (_, law))| is_of_bridge(*k) && law.cohesion > 0.0 && law.keeps_cohesion());
+    warnings.extend(keeps.map(|(_, (name, law))| {
+        format!(
+            "joint_law.{name}: rock bridges keep their cohesion of {:.3e} Pa when they fail, along the whole side of an \
+             element; give a `residual_cohesion` below it",
+            law.cohesion
+        )
+    }));
+    warnings
 }
 
 fn of_law(name: &str, law: &JointLaw, model: &Model) -> Vec<String> {

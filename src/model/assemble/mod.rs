@@ -151,7 +151,7 @@ fn model(
         strengths: case.rocks.values().map(rock::yielding).collect(),
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
-        laws: joint_laws(case, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks)),
+        laws: joint_laws(case, joints, stiffness_over(covers.mesh.size.max(STIFFNESS_LENGTH), case, &rocks))?,
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         fixities,
@@ -245,10 +245,12 @@ fn two_digits_below(value: f64) -> f64 {
 }
 
 /// The laws of the case by name; a continuum, which needs none, has one without strength.
-fn joint_laws(case: &Case, stiffness: f64) -> Vec<JointLaw> {
+fn joint_laws(case: &Case, joints: &Joints, stiffness: f64) -> Result<Vec<JointLaw>, Invalid> {
     let without = case.joint_laws.is_empty().then(|| case::JointLaw::frictional(0.0));
     let laws = case.joint_laws.values().chain(&without);
-    laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect()
+    let mut laws: Vec<JointLaw> = laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect();
+    bonds::of_bridges(case, joints, &mut laws)?;
+    Ok(laws)
 }
 
 fn joint_law(law: &case::JointLaw, stiffness: f64, shear_ratio: f64) -> JointLaw {
