@@ -225,7 +225,7 @@ enum enmm_event_kind
    */
   ENMM_EVENT_OVERLAPPED = 3,
   /**
-   * The last bond of a joint broke whose law has an energy of fracture; in the initial equilibrium, too.
+   * The last bond of a rock bridge broke, or of a joint with an energy of fracture; in the initial equilibrium, too.
    */
   ENMM_EVENT_BROKEN = 4,
 };
@@ -585,7 +585,7 @@ typedef struct enmm_totals {
    */
   uint64_t overlapping_pairs;
   /**
-   * Bonded length that has broken, of joints whose law has an energy of fracture (m).
+   * Bonded length that has broken, of rock bridges and joints with an energy of fracture (m).
    */
   double broken_length;
   /**

@@ -11,51 +11,8 @@ from test_ctypes_life import fingerprint
 
 H = 0.001
 STEPS = 300
-# A block on a plane of 40 degrees with three bridges, which break one after the other while a force grows.
-CASE = """
-title = "Bridges that break"
-domain.outline = [[-4, -2], [14, -2], [14, 0], [10, 0], [10, 3.9], [0, 3.9], [0, 0], [-4, 0]]
-domain.joint_law = "joint"
-mesh.size = 1.3
-mesh.angle_deg = 8
-joint = [
-    { points = [[0, 0], [1, 0]] }, { points = [[1.4, 0], [5, 0]] }, { points = [[5.3, 0], [8.7, 0]] },
-    { points = [[9, 0], [10, 0]] },
-]
-bridge = [
-    { points = [[1, 0], [1.4, 0]], law = "rock" }, { points = [[5, 0], [5.3, 0]], law = "rock" },
-    { points = [[8.7, 0], [9, 0]], law = "rock" },
-]
-rock.r = { density = 2600, young = 10e9, poisson = 0.25 }
-joint_law.joint.friction_deg = 30
-solver.communication_step = 0.001
-gravity = { x = 6.3, y = -7.5 }
-fix = [{ block = [5, -1] }]
-[joint_law.rock]
-friction_deg = 45
-residual_friction_deg = 30
-cohesion = 0.35e6
-residual_cohesion = 0
-tension = 0.2e6
-tension_energy = 20
-shear_energy = 1e3
-[[port]]
-name = "block"
-block = [5, 2]
-[[stage]]
-name = "break"
-kind = "dynamic"
-duration = 1.0
-damping = 0.1
-"""
+CASE = Path(__file__).parents[1] / "ffi/capi/tests/cases/bridges.toml"
 MOTIONS = ["displacement_x", "displacement_y", "rotation", "velocity_x", "velocity_y", "angular_velocity"]
-
-
-@pytest.fixture(scope="module")
-def case(tmp_path_factory) -> Path:
-    path = tmp_path_factory.mktemp("bridges") / "bridges.toml"
-    path.write_text(CASE)
-    return path
 
 
 def push(k: int) -> float:
@@ -72,9 +29,9 @@ def state(model) -> tuple:
     return (*fingerprint(model), model.serialize())
 
 
-def middle(package, case) -> int:
+def middle(package) -> int:
     """The first step after which some of the bridges have broken and some hold."""
-    with package.Model.from_file(case) as model:
+    with package.Model.from_file(CASE) as model:
         model.start()
         broken = []
         for k in range(STEPS):
@@ -100,9 +57,9 @@ with enmm.Model.from_file(sys.argv[2]) as model, open(sys.argv[3], "rb") as file
 """
 
 
-def test_a_failure_goes_on_to_the_same_bits(package, case, tmp_path):
-    half = middle(package, case)
-    with package.Model.from_file(case) as model:
+def test_a_failure_goes_on_to_the_same_bits(package, tmp_path):
+    half = middle(package)
+    with package.Model.from_file(CASE) as model:
         model.start()
         act(model, 0, half)
         here, file = state(model), tmp_path / "state.bin"
@@ -116,7 +73,7 @@ def test_a_failure_goes_on_to_the_same_bits(package, case, tmp_path):
                 assert state(model) == here
                 act(model, half, STEPS)
                 assert state(model) == expected
-    arguments = [sys.executable, "-c", CHILD, str(Path(__file__).parent), str(case), str(file), str(half)]
+    arguments = [sys.executable, "-c", CHILD, str(Path(__file__).parent), str(CASE), str(file), str(half)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     output = subprocess.run(arguments, env=environment, capture_output=True, text=True, timeout=120, check=False)
     assert output.returncode == 0, output.stderr
@@ -124,10 +81,10 @@ def test_a_failure_goes_on_to_the_same_bits(package, case, tmp_path):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_an_fmu_breaks_the_bridges_with_the_bits_of_the_library(package, enmm, opened, case, tmp_path, version):
-    half = middle(package, case)
+def test_an_fmu_breaks_the_bridges_with_the_bits_of_the_library(package, enmm, opened, tmp_path, version):
+    half = middle(package)
     path = tmp_path / "bridges.fmu"
-    done = enmm("fmu", case, "-o", path, "--fmi", version)
+    done = enmm("fmu", CASE, "-o", path, "--fmi", version)
     assert done.returncode == 0, done.stderr
     instance = opened(Fmu.unpack(path, tmp_path / "bridges")).initialize()
     names = [f"block.{name}" for name in MOTIONS] + ["broken_length"]
@@ -145,7 +102,7 @@ def test_an_fmu_breaks_the_bridges_with_the_bits_of_the_library(package, enmm, o
     assert bits(instance.get(*names)) == here
     run(half, STEPS)
     assert bits(instance.get(*names)) == expected
-    with package.Model.from_file(case) as model:
+    with package.Model.from_file(CASE) as model:
         model.start()
         act(model, 0, STEPS)
         block = max(model.blocks(), key=lambda block: block["displacement_x"])

@@ -72,7 +72,7 @@ pub struct Summary {
     pub overlap_max: f64,
     /// Pairs of blocks that have overlapped.
     pub overlapping_pairs: usize,
-    /// Bonded length (m) that has broken, of joints whose law has an energy of fracture.
+    /// Bonded length (m) that has broken, of rock bridges and joints with an energy of fracture.
     pub broken_length: f64,
     /// Joints whose last bond has broken, as numbers of traces, in the order of time.
     pub broken_joints: Vec<u32>,

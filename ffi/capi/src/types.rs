@@ -107,7 +107,7 @@ pub enum enmm_event_kind {
     /// about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
     /// initial equilibrium, too, whose times are below 0.
     ENMM_EVENT_OVERLAPPED = 3,
-    /// The last bond of a joint broke whose law has an energy of fracture; in the initial equilibrium, too.
+    /// The last bond of a rock bridge broke, or of a joint with an energy of fracture; in the initial equilibrium, too.
     ENMM_EVENT_BROKEN = 4,
 }
 
@@ -282,7 +282,7 @@ pub struct enmm_totals {
     pub overlap_max: f64,
     /// Pairs of blocks that have overlapped.
     pub overlapping_pairs: u64,
-    /// Bonded length that has broken, of joints whose law has an energy of fracture (m).
+    /// Bonded length that has broken, of rock bridges and joints with an energy of fracture (m).
     pub broken_length: f64,
     /// Joints whose last bond has broken.
     pub broken_joints: u64,

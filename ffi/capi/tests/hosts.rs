@@ -83,6 +83,11 @@ fn no_call_that_fails_changes_a_byte_of_the_state() {
 }
 
 #[test]
+fn bridges_that_break_are_events_and_give_the_same_bits_again() {
+    say(&succeed(Command::new(host("ffi/capi/tests/c/bridges.c")).arg("ffi/capi/tests/cases/bridges.toml")));
+}
+
+#[test]
 fn energy_from_nowhere_is_a_warning_in_the_log() {
     // Rock of 50 Pa instead of 1 GPa: the initial equilibrium has two steps of 3.2 s.
     let small = std::fs::read_to_string(root().join(SMALL)).expect("the case");

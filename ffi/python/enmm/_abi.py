@@ -49,7 +49,7 @@ class EventKind(IntEnum):
     about them are wrong from here on. Every 50 internal steps the polygons of near blocks are compared, in the
     initial equilibrium, too, whose times are below 0."""
     BROKEN = 4
-    """The last bond of a joint broke whose law has an energy of fracture; in the initial equilibrium, too."""
+    """The last bond of a rock bridge broke, or of a joint with an energy of fracture; in the initial equilibrium, too."""
 
 
 class PortKind(IntEnum):

@@ -101,7 +101,7 @@ class Totals(NamedTuple):
     overlapping_pairs: int
     """Pairs of blocks that have overlapped."""
     broken_length: float
-    """Bonded length that has broken, of joints whose law has an energy of fracture (m)."""
+    """Bonded length that has broken, of rock bridges and joints with an energy of fracture (m)."""
     broken_joints: int
     """Joints whose last bond has broken."""
 
