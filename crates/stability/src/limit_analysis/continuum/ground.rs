@@ -137,33 +137,70 @@ fn yields(program: &mut Conic, rock: &Rock, strength: f64) {
     program.is_positive(Sum { terms: vec![(MISSING, 1.0)], constant: SPARE }.into());
     for (t, patch) in rock.patches.iter().enumerate().filter(|(_, patch)| !patch.is_held) {
         for corner in 0..3 {
-            for &line in &rock.kinds[patch.kind] {
-                yields_at(program, stress(t, corner), line, strength);
-            }
+            let s = stress(t, corner);
+            let lines = rock.kinds[patch.kind].iter();
+            yields_at(program, s, lines.flat_map(|&line| limits(s, line, strength)).collect());
         }
     }
 }
 
-fn yields_at(program: &mut Conic, s: usize, rock: Strength, x: f64) {
+/// A limit of the diameter of Mohr's circle: the room for it, over a factor that changes with the strength.
+struct Limit {
+    room: Strong,
+    factor: f64,
+    change: f64,
+}
+
+/// Limits of the stress whose first unknown is `s`: by friction and cohesion, and by the tensile strength.
+fn limits(s: usize, rock: Strength, x: f64) -> impl Iterator<Item = Limit> {
+    let sum = |terms: Vec<(usize, f64)>, constant: f64| Sum { terms, constant };
     let friction = rock.friction * x;
     let secant = (1.0 + friction * friction).sqrt();
-    let change = rock.friction * friction / secant;
-    let sum = |terms: Vec<(usize, f64)>, constant: f64| Sum { terms, constant };
-    let shear = |by: f64| [sum(vec![(s, by), (s + 1, -by)], 0.0), sum(vec![(s + 2, 2.0 * by)], 0.0)];
-    let [across, along] = shear(secant);
-    let [across_change, along_change] = shear(change);
-    let room = sum(vec![(MISSING, 2.0), (s, -friction), (s + 1, -friction)], 2.0 * rock.cohesion * x);
-    let room_change = sum(vec![(s, -rock.friction), (s + 1, -rock.friction)], 2.0 * rock.cohesion);
-    program.is_cone([
-        Strong { now: room, change: room_change },
-        Strong { now: across, change: across_change },
-        Strong { now: along, change: along_change },
-    ]);
-    if let Some(tension) = rock.tension.filter(|tension| tension * rock.friction * x < rock.cohesion) {
-        let room = sum(vec![(MISSING, 2.0), (s, -1.0), (s + 1, -1.0)], 2.0 * tension * x);
-        let room_change = Sum::constant(2.0 * tension);
-        let [across, along] = shear(1.0);
-        program.is_cone([Strong { now: room, change: room_change }, across.into(), along.into()]);
+    let shear = Limit {
+        room: Strong {
+            now: sum(vec![(MISSING, 2.0), (s, -friction), (s + 1, -friction)], 2.0 * rock.cohesion * x),
+            change: sum(vec![(s, -rock.friction), (s + 1, -rock.friction)], 2.0 * rock.cohesion),
+        },
+        factor: secant,
+        change: rock.friction * friction / secant,
+    };
+    let cut_off = rock.tension.filter(|tension| tension * rock.friction * x < rock.cohesion).map(|tension| Limit {
+        room: Strong {
+            now: sum(vec![(MISSING, 2.0), (s, -1.0), (s + 1, -1.0)], 2.0 * tension * x),
+            change: Sum::constant(2.0 * tension),
+        },
+        factor: 1.0,
+        change: 0.0,
+    });
+    std::iter::once(shear).chain(cut_off)
+}
+
+/// Keeps the diameter of Mohr's circle within all limits. One is a cone; several are straight lines in a diameter that
+/// has the cone.
+fn yields_at(program: &mut Conic, s: usize, limits: Vec<Limit>) {
+    let circle = |by: f64| {
+        let sum = |terms| Sum { terms, constant: 0.0 };
+        [sum(vec![(s, by), (s + 1, -by)]), sum(vec![(s + 2, 2.0 * by)])]
+    };
+    if limits.len() > 1 {
+        let diameter = Sum { terms: vec![(program.unknown(), 1.0)], constant: 0.0 };
+        let [across, along] = circle(1.0);
+        program.is_cone([diameter.clone().into(), across.into(), along.into()]);
+        for Limit { room, factor, change } in limits {
+            program.is_positive(Strong {
+                now: room.now.plus(&diameter, -factor),
+                change: room.change.plus(&diameter, -change),
+            });
+        }
+        return;
+    }
+    for Limit { room, factor, change } in limits {
+        let [[across, along], [across_change, along_change]] = [factor, change].map(circle);
+        program.is_cone([
+            room,
+            Strong { now: across, change: across_change },
+            Strong { now: along, change: along_change },
+        ]);
     }
 }
 
