@@ -37,8 +37,8 @@ pub(super) fn of_bridges(case: &Case, joints: &Joints, laws: &mut [JointLaw]) ->
                 return Err(Invalid {
                     key: format!("stage[{k}].switch_law[{i}].from"),
                     message: format!(
-                        "is {:?}, the law of rock bridges, which hold until they break; let them break, give them a law \
-                         of their own, or remove this",
+                        "is {:?}, the law of rock bridges, which hold until they break; let them break, give them a \
+                         law of their own, or remove this",
                         switch.from
                     ),
                 });
@@ -67,8 +67,8 @@ pub(super) fn warnings(case: &Case, model: &Model, joints: &Joints) -> Vec<Strin
     let keeps = laws.filter(|(k, (_, law))| is_of_bridge(*k) && law.cohesion > 0.0 && law.keeps_cohesion());
     warnings.extend(keeps.map(|(_, (name, law))| {
         format!(
-            "joint_law.{name}: rock bridges keep their cohesion of {:.3e} Pa when they fail, along the whole side of an \
-             element; give a `residual_cohesion` below it",
+            "joint_law.{name}: rock bridges keep their cohesion of {:.3e} Pa when they fail, along the whole side of \
+             an element; give a `residual_cohesion` below it",
             law.cohesion
         )
     }));

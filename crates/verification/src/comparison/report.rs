@@ -44,12 +44,12 @@ fn folded(line: &str) -> String {
 const COLUMNS: usize = 110;
 
 const HEAD: &str = "# The explicit method beside the implicit one\n\n\
-Written by `cargo xtask compare`; every number was measured in one run on one machine, both methods in turn on the\n\
-same models, covers, contacts and joint laws. The implicit method is Newmark's rule with β = ½, γ = 1 as in\n\
-discontinuous deformation analysis, a global stiffness of elements and contact springs, sparse Cholesky with the\n\
-symbolic factorisation kept while the pattern holds, and open–close iteration with refactorisation; it runs on one\n\
-thread. Its default step is 20 explicit ones. The error is that against the exact answer; for the slope, which has\n\
-none, it is the root mean square of the difference of the blocks' final places from the explicit ones, relative to\n\
+Written by `cargo xtask compare`; every number was measured in one run on one machine, both methods in turn on the \
+same models, covers, contacts and joint laws. The implicit method is Newmark's rule with β = ½, γ = 1 as in \
+discontinuous deformation analysis, a global stiffness of elements and contact springs, sparse Cholesky with the \
+symbolic factorisation kept while the pattern holds, and open–close iteration with refactorisation; it runs on one \
+thread. Its default step is 20 explicit ones. The error is that against the exact answer; for the slope, which has \
+none, it is the root mean square of the difference of the blocks' final places from the explicit ones, relative to \
 their displacement.\n";
 
 const TABLE: &str = "| variant | method | blocks | covers | contacts | dt [s] | error | wall [s] | CPU [s] | steps | \
