@@ -186,7 +186,8 @@ fn a_stage_does_not_switch_the_law_of_a_bridge() {
     let text = bridged_box(0.2, 8.0).replace("tension_energy = 50\nshear_energy = 2000\n", "");
     let text = format!("{text}switch_law = [{{ from = \"rock\", to = \"joint\" }}]\n");
     let loaded = enmm_io::parse_case(&text, "case.toml", Path::new("")).expect("reads");
-    let refusal = Simulation::new(loaded.case).err().expect("a refusal").to_string();
+    let Err(refusal) = Simulation::new(loaded.case) else { panic!("a law of bridges is switched") };
+    let refusal = refusal.to_string();
     assert!(
         refusal.contains("stage[0].switch_law[0].from") && refusal.contains("the law of rock bridges"),
         "{refusal}"
