@@ -153,12 +153,17 @@ fn a_joint_beside_a_bridge_keeps_its_own_friction() {
     }
 }
 
+/// The same without energies of fracture.
+fn brittle_box(size: f64, angle: f64) -> String {
+    bridged_box(size, angle).replace("tension_energy = 50\nshear_energy = 2000\n", "")
+}
+
 /// A bridge without energies of fracture breaks at once, over the length that it is drawn with, and that is an event.
 #[test]
 fn a_brittle_bridge_is_as_long_as_it_is_drawn_on_any_mesh() {
     let most = 1e6 * (0.3 * 60f64.to_radians().tan() + 0.7 * 30f64.to_radians().tan()) + 0.3 * 0.5e6;
     for (size, angle) in [(0.6, 8.0), (0.31, 8.0), (0.2, 21.0), (0.1, 37.0)] {
-        let text = bridged_box(size, angle).replace("tension_energy = 50\nshear_energy = 2000\n", "");
+        let text = brittle_box(size, angle);
         let mut simulation = simulation(&text);
         let (mut peak, mut broken) = (0.0f64, 0.0);
         while broken < 0.29 {
@@ -183,7 +188,7 @@ fn a_brittle_bridge_is_as_long_as_it_is_drawn_on_any_mesh() {
 
 #[test]
 fn a_stage_does_not_switch_the_law_of_a_bridge() {
-    let text = bridged_box(0.2, 8.0).replace("tension_energy = 50\nshear_energy = 2000\n", "");
+    let text = brittle_box(0.2, 8.0);
     let text = format!("{text}switch_law = [{{ from = \"rock\", to = \"joint\" }}]\n");
     let loaded = enmm_io::parse_case(&text, "case.toml", Path::new("")).expect("reads");
     let Err(refusal) = Simulation::new(loaded.case) else { panic!("a law of bridges is switched") };
@@ -197,7 +202,7 @@ fn a_stage_does_not_switch_the_law_of_a_bridge() {
 #[test]
 fn a_bridge_that_keeps_its_cohesion_is_warned_of() {
     let warned = |text: &str| simulation(text).built().warnings.join("\n");
-    let text = bridged_box(0.2, 8.0).replace("tension_energy = 50\nshear_energy = 2000\n", "");
+    let text = brittle_box(0.2, 8.0);
     assert!(!warned(&text).contains("residual_cohesion"), "{}", warned(&text));
     let found = warned(&text.replace("residual_cohesion = 0\n", ""));
     assert!(found.contains("keep their cohesion of 5.000e5 Pa") && found.contains("`residual_cohesion`"), "{found}");

@@ -3,10 +3,11 @@
 
 use crate::contact::{JointLaw, LawId, Softening};
 use crate::mechanics::Elasticity;
-use crate::model::case::{Case, Integrator, Invalid};
+use crate::model::case::{Case, Integrator, Invalid, Stage};
 use crate::state::Model;
 
 use super::joints::Joints;
+use super::law_of;
 
 /// E/(1 − ν²) (Pa) of the stiffest rock.
 fn plane_modulus(model: &Model) -> f64 {
@@ -23,29 +24,25 @@ pub(super) fn of_bridges(case: &Case, joints: &Joints, laws: &mut [JointLaw]) ->
     if case.solver.integrator == Integrator::Implicit {
         return Ok(());
     }
-    for &bridge in &joints.bridges {
-        let law = &mut laws[joints.traces[bridge].1.index()];
+    for law in joints.bridge_laws() {
+        let law = &mut laws[law.index()];
         if law.softening.is_none() && law.breaks() {
             law.softening = Some(Softening::AT_ONCE);
         }
     }
-    let names: Vec<&String> = case.joint_laws.keys().collect();
-    for (k, stage) in case.stages.iter().enumerate() {
-        for (i, switch) in stage.law_switches.iter().enumerate() {
-            let is_bond = |law: usize| laws[law].softening.is_some();
-            if names.binary_search(&&switch.from).is_ok_and(is_bond) {
-                return Err(Invalid {
-                    key: format!("stage[{k}].switch_law[{i}].from"),
-                    message: format!(
-                        "is {:?}, the law of rock bridges, which hold until they break; let them break, give them a \
-                         law of their own, or remove this",
-                        switch.from
-                    ),
-                });
-            }
-        }
-    }
-    Ok(())
+    let is_bond = |name: &String| law_of(case, name).is_some_and(|law| laws[law.index()].softening.is_some());
+    let switches = |(k, stage): (usize, &Stage)| {
+        let switch = stage.law_switches.iter().position(|switch| is_bond(&switch.from))?;
+        Some((k, switch, stage.law_switches[switch].from.clone()))
+    };
+    let Some((stage, switch, name)) = case.stages.iter().enumerate().find_map(switches) else { return Ok(()) };
+    Err(Invalid {
+        key: format!("stage[{stage}].switch_law[{switch}].from"),
+        message: format!(
+            "is {name:?}, the law of rock bridges, which hold until they break; let them break, give them a law of \
+             their own, or remove this"
+        ),
+    })
 }
 
 /// How many rock bridges there are, and how long they are in all.
@@ -63,7 +60,7 @@ pub(super) fn warnings(case: &Case, model: &Model, joints: &Joints) -> Vec<Strin
     let laws = case.joint_laws.keys().zip(&model.laws).enumerate();
     let mut warnings: Vec<String> =
         laws.clone().filter(|(k, _)| used(*k)).flat_map(|(_, (name, law))| of_law(name, law, model)).collect();
-    let is_of_bridge = |k: usize| joints.bridges.iter().any(|&bridge| joints.traces[bridge].1 == LawId::new(k));
+    let is_of_bridge = |k: usize| joints.bridge_laws().any(|law| law == LawId::new(k));
     let keeps = laws.filter(|(k, (_, law))| is_of_bridge(*k) && law.cohesion > 0.0 && law.keeps_cohesion());
     warnings.extend(keeps.map(|(_, (name, law))| {
         format!(

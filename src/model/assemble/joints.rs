@@ -20,6 +20,13 @@ pub(super) struct Joints {
     pub default_law: LawId,
 }
 
+impl Joints {
+    /// Law of each rock bridge.
+    pub fn bridge_laws(&self) -> impl Iterator<Item = LawId> {
+        self.bridges.iter().map(|&bridge| self.traces[bridge].1)
+    }
+}
+
 /// Joint traces with their laws.
 type Traces = Vec<(Vec<Point>, LawId)>;
 

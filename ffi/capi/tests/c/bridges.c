@@ -4,20 +4,10 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "state_bytes.h"
 
 enum { STEPS = 300, BRIDGES = 3 };
 static const double H = 0.001;
-
-static unsigned char *bytes_of(enmm_model *model, size_t *size)
-{
-    enmm_state *state = NULL;
-    OK(enmm_state_save(model, &state));
-    OK(enmm_state_serialize(model, state, NULL, 0, size));
-    unsigned char *bytes = malloc(*size);
-    OK(enmm_state_serialize(model, state, bytes, *size, size));
-    OK(enmm_state_free(state));
-    return bytes;
-}
 
 static int same(const unsigned char *a, size_t na, const unsigned char *b, size_t nb)
 {

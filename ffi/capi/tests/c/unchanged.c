@@ -4,23 +4,12 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "state_bytes.h"
 
 enum { BLOCK, BASE, COUNT };
 
 static unsigned char *kept = NULL;
 static size_t kept_size = 0;
-
-static unsigned char *bytes_of(enmm_model *model, size_t *size)
-{
-    unsigned char *bytes;
-    enmm_state *state = NULL;
-    OK(enmm_state_save(model, &state));
-    OK(enmm_state_serialize(model, state, NULL, 0, size));
-    bytes = malloc(*size);
-    OK(enmm_state_serialize(model, state, bytes, *size, size));
-    OK(enmm_state_free(state));
-    return bytes;
-}
 
 static void keep(enmm_model *model)
 {

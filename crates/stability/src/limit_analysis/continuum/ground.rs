@@ -182,25 +182,23 @@ fn yields_at(program: &mut Conic, s: usize, limits: Vec<Limit>) {
         let sum = |terms| Sum { terms, constant: 0.0 };
         [sum(vec![(s, by), (s + 1, -by)]), sum(vec![(s + 2, 2.0 * by)])]
     };
-    if limits.len() > 1 {
+    let diameter = (limits.len() > 1).then(|| {
         let diameter = Sum { terms: vec![(program.unknown(), 1.0)], constant: 0.0 };
         let [across, along] = circle(1.0);
         program.is_cone([diameter.clone().into(), across.into(), along.into()]);
-        for Limit { room, factor, change } in limits {
-            program.is_positive(Strong {
-                now: room.now.plus(&diameter, -factor),
-                change: room.change.plus(&diameter, -change),
-            });
+        diameter
+    });
+    for Limit { room: Strong { now, change: slope }, factor, change } in limits {
+        match &diameter {
+            Some(diameter) => {
+                program.is_positive(Strong { now: now.plus(diameter, -factor), change: slope.plus(diameter, -change) })
+            }
+            None => {
+                let [[across, along], [across_change, along_change]] = [factor, change].map(circle);
+                let across = Strong { now: across, change: across_change };
+                program.is_cone([Strong { now, change: slope }, across, Strong { now: along, change: along_change }]);
+            }
         }
-        return;
-    }
-    for Limit { room, factor, change } in limits {
-        let [[across, along], [across_change, along_change]] = [factor, change].map(circle);
-        program.is_cone([
-            room,
-            Strong { now: across, change: across_change },
-            Strong { now: along, change: along_change },
-        ]);
     }
 }
 
