@@ -45,7 +45,7 @@ fn a_resting_block_bears_its_weight_by_stress_and_contact() {
     // Mean vertical stress of a body under its own weight that rests on its foot: −½·ρ·g·height. The stress is that of
     // the reference shape, which differs by the strain: 1e-5; equilibrium holds to 1e-6.
     assert!((block.mean_stress[1] + 0.5 * weight).abs() < 1e-4 * weight, "{block:?}");
-    assert!(block.contact_count >= 2 && block.contact_count == base.contact_count);
+    assert!(block.contacts.count >= 2 && block.contacts.count == base.contacts.count);
     let mut force = Vector::zeros();
     simulation.each_contact(|contact| {
         if contact.history.state != ContactState::Open {
@@ -79,7 +79,7 @@ y = 0
     assert!((block.angular_velocity - 1.5).abs() < 1e-5, "{block:?}");
     let kinetic = 0.5 * 2600.0 * 4.25 + 0.5 * (2600.0 / 6.0) * 1.5 * 1.5;
     assert!((block.kinetic_energy - kinetic).abs() < 1e-5 * kinetic, "{} {kinetic}", block.kinetic_energy);
-    assert!(block.detached && block.contact_count == 0);
+    assert!(block.detached && block.contacts.count == 0);
 }
 
 #[test]

@@ -30,5 +30,7 @@ pub use solver::reference;
 pub use solver::{Approach, BlockImpulse, OpenClose, OtherConstraints, SolverOptions, SolverReport};
 pub use spring::{SoftSpring, Spring};
 pub use support::{Resistance, Support, SupportRow};
-pub use vertex_edge::{BondHistory, ContactHistory, ContactSetting, ContactState, Crushed, VertexEdge};
+pub use vertex_edge::{
+    BondHistory, ContactHistory, ContactSetting, ContactState, Crushed, Meeting, Unloaded, VertexEdge,
+};
 pub use vertex_rule::{ContactCache, ContactCandidate, PenetratingContacts, VertexRule};

@@ -31,11 +31,8 @@ pub struct ContactHistory {
     pub side: SideId,
     /// Edge of that side in the last step.
     pub edge: EdgeId,
-    /// Time (s) since its faces last parted: those of the node's block against the side. Infinite where a static stage
-    /// has held it.
-    pub age: f32,
-    /// Normal stiffness (N/m per metre) that an impact keeps; 0 without one.
-    pub kept_stiffness: f32,
+    /// What it keeps since its faces met.
+    pub meeting: Meeting,
     /// Normal force at the end of the last step (N/m), compression positive.
     pub normal_force: f64,
     /// Shear force at the end of the last step (N/m), on the node along the edge.
@@ -46,10 +43,8 @@ pub struct ContactHistory {
     pub trend: [f64; 2],
     /// Elastic shear of the spring (m), independent of the length of the contact.
     pub sheared: f64,
-    /// Initial penetration without force (m); it fades.
-    pub offset: f64,
-    /// Closure without force: from pre-stress and dilation (m).
-    pub rest: f64,
+    /// Where its normal spring is unloaded.
+    pub unloaded: Unloaded,
     /// Accumulated slip (m).
     pub slip: f64,
     /// Way up the asperities (m), to either side: what dilation follows (Eq. 21).
@@ -62,11 +57,29 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
+/// What a contact keeps since its faces met: those of the node's block and the side.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Meeting {
+    /// Time (s) since they last parted. Infinite where a static stage has held the contact.
+    pub age: f32,
+    /// Normal stiffness (N/m per metre) that an impact keeps; 0 without one.
+    pub kept_stiffness: f32,
+}
+
+/// Where the normal spring of a contact is unloaded: both lengths count from a gap of zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Unloaded {
+    /// Initial penetration without force (m); it fades.
+    pub offset: f64,
+    /// Closure without force: from pre-stress and dilation (m).
+    pub rest: f64,
+}
+
 impl ContactHistory {
     /// Gap (m) at which the spring is unloaded; infinite where a bonded joint pulls, which no gap ends.
     pub(super) fn unloaded_gap(&self) -> f64 {
         let is_pulled = self.intact && self.normal_force < 0.0;
-        if is_pulled { f64::INFINITY } else { self.rest - self.offset }
+        if is_pulled { f64::INFINITY } else { self.unloaded.rest - self.unloaded.offset }
     }
 }
 
@@ -284,13 +297,13 @@ impl VertexEdge {
     /// Penetration of the node (m): that of the springs plus the initial offset.
     #[inline(always)]
     pub fn penetration(&self) -> f64 {
-        self.loaded_penetration() + self.history.offset
+        self.loaded_penetration() + self.history.unloaded.offset
     }
 
     /// Penetration (m) that the springs resist: without the initial offset.
     #[inline(always)]
     pub fn loaded_penetration(&self) -> f64 {
-        -self.gap - self.history.rest
+        -self.gap - self.history.unloaded.rest
     }
 
     /// Normal and shear component of a cover field at the node relative to the edge.

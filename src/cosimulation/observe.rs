@@ -41,12 +41,8 @@ pub struct Totals {
     pub displacement_max: f64,
     /// Largest velocity of a cover (m/s).
     pub velocity_max: f64,
-    /// Contacts without force.
-    pub open_contacts: u32,
-    /// Contacts at their shear limit.
-    pub slipping_contacts: u32,
-    /// Contacts below their shear limit.
-    pub locked_contacts: u32,
+    /// Contacts by their state.
+    pub contacts: ContactCounts,
     /// Largest penetration of the run so far (m).
     pub penetration_max: f64,
     /// Net over applied force.
@@ -69,6 +65,17 @@ pub struct Totals {
     pub broken_joints: u64,
 }
 
+/// Contacts by their state.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ContactCounts {
+    /// Without force.
+    pub open: u32,
+    /// At their shear limit.
+    pub slipping: u32,
+    /// Below their shear limit.
+    pub locked: u32,
+}
+
 /// Sums and extremes as outputs show them, but for the energies: the FMUs, and by their names the structures of C and
 /// Python. New ones go to the end.
 pub const TOTALS: [Quantity<Totals>; 15] = [
@@ -77,9 +84,9 @@ pub const TOTALS: [Quantity<Totals>; 15] = [
     extreme("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
     Quantity::new(["unbalanced", "unbalanced_ratio"], "", "Net over applied force", |totals| totals.unbalanced),
     extreme("critical_dt", "s", "Stability limit of the internal step", |totals| totals.critical_dt),
-    Quantity::count("open_contacts", "Contacts without force", |totals| f64::from(totals.open_contacts)),
-    Quantity::count("slipping_contacts", "Contacts at their shear limit", |totals| f64::from(totals.slipping_contacts)),
-    Quantity::count("locked_contacts", "Contacts below their shear limit", |totals| f64::from(totals.locked_contacts)),
+    Quantity::count("open_contacts", "Contacts without force", |totals| f64::from(totals.contacts.open)),
+    Quantity::count("slipping_contacts", "Contacts at their shear limit", |totals| f64::from(totals.contacts.slipping)),
+    Quantity::count("locked_contacts", "Contacts below their shear limit", |totals| f64::from(totals.contacts.locked)),
     Quantity::count("detached_blocks", "Blocks that have detached", |totals| f64::from(totals.detached_blocks)),
     Quantity::count("slipped_joints", "Joints that have slipped", |totals| f64::from(totals.slipped_joints)),
     Quantity::count("failed_blocks", "Blocks that have failed", |totals| f64::from(totals.failed_blocks)),
@@ -126,9 +133,11 @@ impl Cosimulation {
             ledger: report.ledger,
             displacement_max: most(&state.displacement),
             velocity_max: most(&state.velocity),
-            open_contacts: contacts(ContactState::Open),
-            slipping_contacts: contacts(ContactState::Slip),
-            locked_contacts: contacts(ContactState::Lock),
+            contacts: ContactCounts {
+                open: contacts(ContactState::Open),
+                slipping: contacts(ContactState::Slip),
+                locked: contacts(ContactState::Lock),
+            },
             penetration_max: state.counters.penetration_max,
             unbalanced: report.unbalanced,
             critical_dt: self.simulation.model().critical_dt,

@@ -3,7 +3,7 @@
 
 use std::fmt::Display;
 
-use crate::contact::{BoltState, BondHistory, ContactHistory, NeighbourList};
+use crate::contact::{BoltState, BondHistory, ContactHistory, Meeting, NeighbourList, Unloaded};
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
 
@@ -226,15 +226,13 @@ impl Simulation {
                 node,
                 side,
                 edge,
-                age,
-                kept_stiffness,
+                meeting: Meeting { age, kept_stiffness },
                 normal_force,
                 shear_force,
                 felt,
                 trend,
                 sheared,
-                offset,
-                rest,
+                unloaded: Unloaded { offset, rest },
                 slip,
                 way,
                 share,
@@ -385,16 +383,15 @@ pub fn check_ledger(ledger: &Ledger) -> Fit {
         support_work,
         damping,
         yielding,
-        bolt_work,
-        bolt_stored,
-        bolt_installed,
+        bolts,
         radiation,
         external_work,
         baseline,
     } = ledger;
     let works =
-        [contact_work, support_work, bolt_work, radiation, external_work, damping, yielding, friction, fracture];
-    numbers("ledger: energies", &[kinetic, strain, potential, stored, bolt_stored, bolt_installed, baseline], FORCE)?;
+        [contact_work, support_work, bolts.work, radiation, external_work, damping, yielding, friction, fracture];
+    let energies = [kinetic, strain, potential, stored, bolts.stored, bolts.installed, baseline];
+    numbers("ledger: energies", &energies, FORCE)?;
     numbers("ledger: works", &works, FORCE)
 }
 
@@ -407,7 +404,6 @@ fn check_counters(counters: &Counters) -> Fit {
         unsettled,
         deep_contacts,
         deepest_contact,
-        crushed,
         crushing,
         broken,
         penetration_max,
@@ -423,7 +419,7 @@ fn check_counters(counters: &Counters) -> Fit {
         ("halved", halved),
         ("unsettled", unsettled),
         ("deep_contacts", deep_contacts),
-        ("crushed", crushed),
+        ("crushing.times", crushing.times),
         ("searches", searches),
         ("contacts_solved", contacts_solved),
         ("factorisations", factorisations),
@@ -431,7 +427,7 @@ fn check_counters(counters: &Counters) -> Fit {
         at_most(format_args!("counters.{field}"), value, COUNT)?;
     }
     number("counters.deepest_contact", deepest_contact, LENGTH)?;
-    number("counters.crushing", crushing, FORCE)?;
+    number("counters.crushing.energy", crushing.energy, FORCE)?;
     between("counters.broken", broken, 0.0, LENGTH)?;
     number("counters.penetration_max", penetration_max, LENGTH)?;
     number("counters.dt_min", dt_min, TIME)?;

@@ -14,13 +14,13 @@ pub use enmm_case::Case;
 
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use fit::Unfit;
-pub use observe::{BLOCK_QUANTITIES, BlockState};
+pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState};
 pub use restless::Restless;
 pub use simulation::Simulation;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
-    BALANCE, Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State,
+    BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State,
 };
 pub use crate::step::{StepError, StepReport};

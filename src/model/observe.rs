@@ -42,9 +42,16 @@ pub struct BlockState {
     pub kinetic_energy: f64,
     /// Strain energy (J/m).
     pub strain_energy: f64,
-    /// Contacts that carry force.
-    pub contact_count: u32,
-    /// Largest penetration of its contacts (m).
+    /// What its contacts show.
+    pub contacts: BlockContacts,
+}
+
+/// Contacts of a block as hosts see them.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BlockContacts {
+    /// Those that carry force.
+    pub count: u32,
+    /// Largest penetration (m).
     pub penetration_max: f64,
 }
 
@@ -78,10 +85,12 @@ pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
     Quantity {
         is_count: true,
         ..Quantity::new(["contacts", "block_contact_count"], "", "Contacts that carry force", |block| {
-            f64::from(block.contact_count)
+            f64::from(block.contacts.count)
         })
     },
-    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration", |block| block.penetration_max),
+    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration", |block| {
+        block.contacts.penetration_max
+    }),
     Quantity::new(["speed", ""], "m/s", "Speed of the centroid", |block| block.velocity.norm()),
 ];
 
@@ -96,12 +105,12 @@ impl Simulation {
             let depth = penetration(self.model(), &positions, contact);
             for block in [boundary.block[node], boundary.block[contact.edge]] {
                 let state = &mut states[block];
-                state.contact_count += u32::from(contact.state != ContactState::Open);
-                state.penetration_max = state.penetration_max.max(depth);
+                state.contacts.count += u32::from(contact.state != ContactState::Open);
+                state.contacts.penetration_max = state.contacts.penetration_max.max(depth);
             }
         }
         for state in &mut states {
-            state.detached = state.contact_count == 0 && !state.fixed && !state.removed;
+            state.detached = state.contacts.count == 0 && !state.fixed && !state.removed;
         }
         states
     }

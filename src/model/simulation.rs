@@ -491,7 +491,7 @@ impl Simulation {
             } else if position.is_some() || stage == 0 && segment.active {
                 let length = segment.span(&model.covers.star_position, &state.displacement).norm();
                 *bolt = segment.install(length);
-                state.ledger.bolt_installed += segment.energy(bolt, length);
+                state.ledger.bolts.installed += segment.energy(bolt, length);
             }
         }
         Ok(())

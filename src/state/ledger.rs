@@ -28,18 +28,25 @@ pub struct Ledger {
     pub damping: f64,
     /// Energy taken by rock that yields.
     pub yielding: f64,
-    /// Work of bolts.
-    pub bolt_work: f64,
-    /// Energy stored in bolts now.
-    pub bolt_stored: f64,
-    /// Energy that bolts were installed with by their pretension.
-    pub bolt_installed: f64,
+    /// Energies of bolts.
+    pub bolts: BoltEnergies,
     /// Work of quiet boundaries and free-field columns: minus what they carry away, plus what their waves bring.
     pub radiation: f64,
     /// Work of loads, and of gravity while it is ramped.
     pub external_work: f64,
     /// Energy that left with excavated blocks, and energy of the start.
     pub baseline: f64,
+}
+
+/// Energies of bolts (J per metre of depth).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct BoltEnergies {
+    /// Work on the rock.
+    pub work: f64,
+    /// Energy stored now.
+    pub stored: f64,
+    /// Energy that they were installed with by their pretension.
+    pub installed: f64,
 }
 
 impl Ledger {
@@ -51,7 +58,7 @@ impl Ledger {
         self.support_work += share * works.support_work;
         self.damping += share * works.damping;
         self.yielding += share * works.yielding;
-        self.bolt_work += share * works.bolt_work;
+        self.bolts.work += share * works.bolts.work;
         self.radiation += share * works.radiation;
         self.external_work += share * works.external_work;
     }
@@ -64,7 +71,7 @@ impl Ledger {
 
     /// Energy dissipated by bolts: yielding, rupture, and the numerical damping of the implicit spring.
     pub fn bolt_dissipation(&self) -> f64 {
-        self.bolt_installed - self.bolt_work - self.bolt_stored
+        self.bolts.installed - self.bolts.work - self.bolts.stored
     }
 
     /// Energy that appeared from nowhere; zero but for discretisation.
@@ -72,7 +79,7 @@ impl Ledger {
         self.kinetic + self.strain + self.potential + self.damping + self.yielding
             - self.contact_work
             - self.support_work
-            - self.bolt_work
+            - self.bolts.work
             - self.radiation
             - self.external_work
             - self.baseline
@@ -110,7 +117,7 @@ pub const ENERGIES: [Quantity<Ledger>; 19] = [
     energy(["external_work", "external_work"], "Work of loads and inputs", |ledger| ledger.external_work),
     energy(["residual", "energy_residual"], "Energy that appeared from nowhere", |ledger| ledger.residual()),
     energy(["yielding", "yielding_loss"], "Energy taken by yielding rock", |ledger| ledger.yielding),
-    energy(["bolt_work", "bolt_work"], "Work of bolts on the blocks", |ledger| ledger.bolt_work),
+    energy(["bolt_work", "bolt_work"], "Work of bolts on the blocks", |ledger| ledger.bolts.work),
     energy(["radiation", "radiation"], "Work of quiet boundaries: less what waves carry away", |ledger| {
         ledger.radiation
     }),
@@ -119,11 +126,11 @@ pub const ENERGIES: [Quantity<Ledger>; 19] = [
     }),
     energy(["contact_work", "contact_work"], "Work of contact forces on the blocks", |ledger| ledger.contact_work),
     energy(["support_work", "support_work"], "Work of supports on the blocks", |ledger| ledger.support_work),
-    energy(["bolt_stored", "bolt_stored_energy"], "Energy in bolts", |ledger| ledger.bolt_stored),
+    energy(["bolt_stored", "bolt_stored_energy"], "Energy in bolts", |ledger| ledger.bolts.stored),
     energy(
         ["bolt_installed", "bolt_installed_energy"],
         "Energy that bolts were installed with by their pretension",
-        |ledger| ledger.bolt_installed,
+        |ledger| ledger.bolts.installed,
     ),
     energy(["bolt_dissipation", "bolt_dissipation"], "Energy that bolts lost by yielding and rupture", |ledger| {
         ledger.bolt_dissipation()
@@ -166,14 +173,20 @@ mod tests {
             support_work: 64.0,
             damping: 128.0,
             yielding: 256.0,
-            bolt_work: 512.0,
-            bolt_stored: 1024.0,
-            bolt_installed: 2048.0,
+            bolts: BoltEnergies { work: 512.0, stored: 1024.0, installed: 2048.0 },
             radiation: 4096.0,
             external_work: 8192.0,
             baseline: 16384.0,
             fracture: 32768.0,
         }
+    }
+
+    /// All numbers of a ledger, by their names in the table.
+    fn fields(ledger: Ledger) -> serde_json::Map<String, serde_json::Value> {
+        let mut all = serde_json::to_value(ledger).expect("a ledger").as_object().expect("fields").clone();
+        let bolts = all.remove("bolts").expect("energies of bolts");
+        all.extend(bolts.as_object().expect("fields").iter().map(|(name, of)| (format!("bolt_{name}"), of.clone())));
+        all
     }
 
     #[test]
@@ -185,21 +198,23 @@ mod tests {
         };
         let sum: f64 = BALANCE.iter().map(|(name, sign)| sign * get(name)).sum();
         assert_eq!(sum, ledger.residual());
-        let fields = serde_json::to_value(ledger).expect("a ledger");
-        for (field, value) in fields.as_object().expect("fields") {
-            assert_eq!(Some(get(field)), value.as_f64(), "{field}");
+        for (field, value) in fields(ledger) {
+            assert_eq!(Some(get(&field)), value.as_f64(), "{field}");
         }
     }
 
     /// A residual is small or large beside any energy that forces have moved: the work of supports was left out.
     #[test]
     fn every_energy_that_moves_counts_as_the_largest() {
-        let fields = serde_json::to_value(Ledger::default()).expect("a ledger");
-        let fields = fields.as_object().expect("fields");
+        let fields = fields(Ledger::default());
         let largest = |field: &str| {
-            let mut one = fields.clone();
-            one[field] = serde_json::json!(-3.0);
-            serde_json::from_value::<Ledger>(one.into()).expect("a ledger").largest()
+            let mut one = serde_json::to_value(Ledger::default()).expect("a ledger");
+            let place = match field.strip_prefix("bolt_") {
+                Some(of_bolts) => &mut one["bolts"][of_bolts],
+                None => &mut one[field],
+            };
+            *place = serde_json::json!(-3.0);
+            serde_json::from_value::<Ledger>(one).expect("a ledger").largest()
         };
         let still: Vec<&str> = fields.keys().map(String::as_str).filter(|field| largest(field) != 3.0).collect();
         assert_eq!(still, ["baseline", "bolt_installed"]);

@@ -15,7 +15,7 @@ mod workspace;
 pub use events::{Event, EventKind, Events};
 pub use inputs::{Drive, Inputs};
 pub use integrator::{Buffers, OtherIntegrator};
-pub use ledger::{BALANCE, ENERGIES, Ledger};
+pub use ledger::{BALANCE, BoltEnergies, ENERGIES, Ledger};
 pub use memory::Part;
 pub use model::{
     BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
@@ -193,6 +193,15 @@ impl State {
     }
 }
 
+/// Rock that contacts crushed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Crushing {
+    /// Times that a contact began to crush it.
+    pub times: u64,
+    /// Energy (J/m) that it took; part of what contacts dissipate.
+    pub energy: f64,
+}
+
 /// Counters of the whole run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counters {
@@ -210,10 +219,8 @@ pub struct Counters {
     pub deep_contacts: u64,
     /// Deepest of them (m).
     pub deepest_contact: f64,
-    /// Times that a contact began to crush the rock.
-    pub crushed: u64,
-    /// Energy (J/m) that crushed rock took; part of what contacts dissipate.
-    pub crushing: f64,
+    /// Rock that contacts crushed.
+    pub crushing: Crushing,
     /// Bonded length (m) that has broken, of joints that soften.
     pub broken: f64,
     /// Largest penetration of all steps (m).

@@ -11,7 +11,7 @@ use crate::mechanics::{
     Averages, BlockMotion, BlockStart, Damping, Deformation, MassMatrix, PlasticStrain, Turn, YieldSurface,
 };
 
-use super::{Buffers, Model, State};
+use super::{Buffers, Crushing, Model, State};
 
 /// Buffers, sized at the first step and reused: what the stages of a step hand on to each other.
 #[doc(alias = "scratch buffers")]
@@ -187,10 +187,8 @@ pub struct ContactOutcome {
     pub friction: f64,
     /// Part of it that dilation takes to lift the faces (J/m).
     pub dilation: f64,
-    /// Energy (J/m) that crushed rock takes from springs.
-    pub crushing: f64,
-    /// Number of contacts that began to crush.
-    pub crushed: u64,
+    /// Rock that they crush.
+    pub crushing: Crushing,
     /// Largest penetration (m) that springs resist.
     pub penetration: f64,
     /// Number of those that were seen for the first time in this step, and deep.

@@ -58,7 +58,7 @@ fn find_faces(contacts: &[VertexEdge], delay: Option<FrictionDelay>, FaceBuffers
             faces.push(Face { side: history.side, age: 0.0, touches: false, felt: 0.0, length: 0.0 });
         }
         let face = &mut faces[*slot as usize];
-        face.age = face.age.max(history.age);
+        face.age = face.age.max(history.meeting.age);
         face.touches |= contact.gap < hop;
         face.felt += history.felt;
         face.length += if history.felt > 0.0 { contact.length } else { 0.0 };
@@ -74,14 +74,14 @@ fn follow_face(
 ) {
     let face = &faces[of_side[contact.history.side] as usize];
     if !face.touches {
-        (contact.history.age, contact.history.felt, contact.history.kept_stiffness) = (0.0, 0.0, 0.0);
+        (contact.history.meeting.age, contact.history.felt, contact.history.meeting.kept_stiffness) = (0.0, 0.0, 0.0);
         return;
     }
     if is_rough {
         contact.past = if face.length > 0.0 { face.felt / face.length } else { 0.0 };
     }
     contact.delayed = delay.is_some_and(|delay| delay.time > 0.0 && f64::from(face.age) >= YOUNG * delay.time);
-    contact.history.age = face.age + dt as f32;
+    contact.history.meeting.age = face.age + dt as f32;
 }
 
 /// Delay of friction in a stage that begins with these contacts: as the case gives it, or the time in which a shear

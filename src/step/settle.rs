@@ -52,11 +52,11 @@ impl Kernel for Settle<'_> {
             *history = history_of(contact, stored, slipped, &setting);
             let crushed = contact.crush(&setting);
             add_crush(outcome, &crushed);
-            (history.way, history.rest) = (way, history.rest + raised - crushed.closes);
-            history.offset *= fade;
+            (history.way, history.unloaded.rest) = (way, history.unloaded.rest + raised - crushed.closes);
+            history.unloaded.offset *= fade;
             history.felt = contact.felt_after(&setting);
             if rests {
-                history.age = f32::INFINITY;
+                history.meeting.age = f32::INFINITY;
             }
         }
     }
@@ -79,17 +79,17 @@ fn add_works(
 /// Adds the energy that crushed rock takes.
 #[inline(always)]
 fn add_crush(outcome: &mut ContactOutcome, crushed: &Crushed) {
-    outcome.crushing += crushed.loss;
-    outcome.crushed += u64::from(crushed.begins);
+    outcome.crushing.energy += crushed.loss;
+    outcome.crushing.times += u64::from(crushed.begins);
 }
 
 /// Adds how deep a contact is, and was when it was seen for the first time.
 #[inline(always)]
 fn add_depths(outcome: &mut ContactOutcome, contact: &VertexEdge) {
     outcome.penetration = outcome.penetration.max(contact.loaded_penetration());
-    if contact.fresh && contact.history.offset > 0.0 {
+    if contact.fresh && contact.history.unloaded.offset > 0.0 {
         outcome.deep += 1;
-        outcome.deepest = outcome.deepest.max(contact.history.offset);
+        outcome.deepest = outcome.deepest.max(contact.history.unloaded.offset);
     }
 }
 
@@ -129,8 +129,8 @@ pub fn settle_contacts(
         runs.zip(outcomes.par_iter_mut()).for_each(settle);
     }
     for outcome in outcomes {
-        counters.crushed += outcome.crushed;
-        counters.crushing += outcome.crushing;
+        counters.crushing.times += outcome.crushing.times;
+        counters.crushing.energy += outcome.crushing.energy;
         counters.deep_contacts += outcome.deep;
         counters.deepest_contact = counters.deepest_contact.max(outcome.deepest);
         counters.penetration_max = counters.penetration_max.max(outcome.penetration);

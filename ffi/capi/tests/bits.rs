@@ -30,8 +30,8 @@ fn the_c_abi_gives_the_bits_of_the_facade() {
 fn write_state(text: &mut String, s: &BlockState) {
     let places = [s.centroid.x, s.centroid.y, s.displacement.x, s.displacement.y];
     let motion = [s.rotation, s.velocity.x, s.velocity.y, s.angular_velocity];
-    let sums = [s.area, s.mass, s.kinetic_energy, s.strain_energy, s.penetration_max];
+    let sums = [s.area, s.mass, s.kinetic_energy, s.strain_energy, s.contacts.penetration_max];
     let values = [&places[..], &motion, &s.mean_stress, &sums].concat();
     let bits: String = values.iter().map(|value| format!(" {:016x}", value.to_bits())).collect();
-    writeln!(text, "{} {}{bits}", s.id, s.contact_count).expect("text takes text");
+    writeln!(text, "{} {}{bits}", s.id, s.contacts.count).expect("text takes text");
 }

@@ -75,13 +75,13 @@ impl NarrowPhase<'_> {
             let kept = self.keep_stiffness(candidate.gap, (stiffness[0], whole), mass, &mut history);
             stiffness = stiffness.map(|k| k * kept);
         }
-        let gap = candidate.gap + history.offset;
+        let gap = candidate.gap + history.unloaded.offset;
         if self.laws[law].penalty[0] {
             let blocks = [point, edge].map(|point| boundary.block[point]);
             let opens = Pair { blocks, covers, weights }.difference(self.velocity);
             stiffness[0] *= self.hardening(gap, opens.dot(&normal));
         }
-        let gap = gap - history.rest;
+        let gap = gap - history.unloaded.rest;
         *contact = VertexEdge {
             history,
             point,
@@ -165,16 +165,16 @@ impl NarrowPhase<'_> {
     /// grow by that, for which it gets an allowance.
     #[inline(always)]
     fn keep_stiffness(&self, gap: f64, (now, whole): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
-        let (age, kept) = (f64::from(history.age), f64::from(history.kept_stiffness));
-        let closed = gap + history.offset - history.rest;
+        let (age, kept) = (f64::from(history.meeting.age), f64::from(history.meeting.kept_stiffness));
+        let closed = gap + history.unloaded.offset - history.unloaded.rest;
         let swing = TAU * (mass / if kept > 0.0 { kept } else { now }).sqrt();
         if age >= 2.0 * swing {
-            history.kept_stiffness = 0.0;
+            history.meeting.kept_stiffness = 0.0;
             return 1.0;
         }
         if kept == 0.0 {
             if closed < 0.0 && age < swing && whole {
-                history.kept_stiffness = now as f32;
+                history.meeting.kept_stiffness = now as f32;
             }
             return 1.0;
         }
@@ -183,8 +183,8 @@ impl NarrowPhase<'_> {
         }
         let share = if whole { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
         let next = kept + (now - kept) * share;
-        history.kept_stiffness = if whole { next as f32 } else { 0.0 };
-        history.offset += closed * ((kept / next).min(1.0) - 1.0);
+        history.meeting.kept_stiffness = if whole { next as f32 } else { 0.0 };
+        history.unloaded.offset += closed * ((kept / next).min(1.0) - 1.0);
         next / now
     }
 
@@ -241,18 +241,18 @@ impl NarrowPhase<'_> {
         let ContactCandidate { node, side, edge, .. } = *candidate;
         let mut history = ContactHistory { node, side, edge, intact: self.first, ..ContactHistory::default() };
         if self.rule.is_deep(candidate) {
-            history.offset = -candidate.gap;
+            history.unloaded.offset = -candidate.gap;
         }
         if let (true, Some(stress)) = (self.first, self.in_situ) {
             let [xx, yy, xy] = stress.at(self.rule.boundary.reference[self.rule.boundary.nodes.point[node]]);
             let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * length;
             history.normal_force = -traction.dot(&normal);
-            history.rest = closure.under(history.normal_force);
+            history.unloaded.rest = closure.under(history.normal_force);
             history.shear_force = -traction.dot(&candidate.tangent);
             history.sheared = history.shear_force / shear_stiffness;
             history.state = ContactState::Lock;
             // It has rested under this stress.
-            (history.age, history.felt) = (f32::INFINITY, history.normal_force.max(0.0));
+            (history.meeting.age, history.felt) = (f32::INFINITY, history.normal_force.max(0.0));
         }
         history
     }

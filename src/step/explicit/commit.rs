@@ -127,7 +127,7 @@ fn start_report(model: &Model, state: &State, step: &Substep, works: &Ledger, wo
     ledger.strain = report::strain(model, state);
     ledger.potential = report::potential(model, state);
     ledger.stored = report::stored(model, state, workspace);
-    ledger.bolt_stored = report::bolt_stored(model, state);
+    ledger.bolts.stored = report::bolt_stored(model, state);
     let contacts = workspace.contacts.iter();
     let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
     StepReport {

@@ -33,7 +33,7 @@ pub(super) fn contact_works(
     }
     for row in &supports.bolts {
         let velocity = row.pair.difference(before) + row.pair.difference(after);
-        works.bolt_work -= row.force * velocity.dot(&row.direction) * (0.5 * kick);
+        works.bolts.work -= row.force * velocity.dot(&row.direction) * (0.5 * kick);
     }
     works
 }

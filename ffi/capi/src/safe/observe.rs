@@ -229,10 +229,10 @@ fn energies(ledger: &Ledger) -> enmm_energies {
         contact_dissipation: ledger.contact_dissipation(),
         residual: ledger.residual(),
         yielding: ledger.yielding,
-        bolt_work: ledger.bolt_work,
+        bolt_work: ledger.bolts.work,
         radiation: ledger.radiation,
-        bolt_stored: ledger.bolt_stored,
-        bolt_installed: ledger.bolt_installed,
+        bolt_stored: ledger.bolts.stored,
+        bolt_installed: ledger.bolts.installed,
         bolt_dissipation: ledger.bolt_dissipation(),
         fracture: ledger.fracture,
     }
@@ -247,9 +247,9 @@ fn totals(totals: &Totals) -> enmm_totals {
         penetration_max: totals.penetration_max,
         unbalanced: totals.unbalanced,
         critical_dt: totals.critical_dt,
-        open_contacts: totals.open_contacts,
-        slipping_contacts: totals.slipping_contacts,
-        locked_contacts: totals.locked_contacts,
+        open_contacts: totals.contacts.open,
+        slipping_contacts: totals.contacts.slipping,
+        locked_contacts: totals.contacts.locked,
         detached_blocks: totals.detached_blocks,
         slipped_joints: totals.slipped_joints,
         failed_blocks: totals.failed_blocks,
@@ -284,16 +284,17 @@ fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
         mass: state.mass,
         kinetic_energy: state.kinetic_energy,
         strain_energy: state.strain_energy,
-        contact_count: state.contact_count,
+        contact_count: state.contacts.count,
         reserved: 0,
-        largest_penetration: state.penetration_max,
+        largest_penetration: state.contacts.penetration_max,
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use engine::cosimulation::ContactCounts;
     use engine::cosimulation::{Quantity, TOTALS};
-    use engine::model::ENERGIES;
+    use engine::model::{BoltEnergies, ENERGIES};
 
     use super::*;
 
@@ -327,9 +328,7 @@ mod tests {
             damping: 128.0,
             yielding: 256.0,
             fracture: 32768.0,
-            bolt_work: 512.0,
-            bolt_stored: 1024.0,
-            bolt_installed: 2048.0,
+            bolts: BoltEnergies { work: 512.0, stored: 1024.0, installed: 2048.0 },
             radiation: 4096.0,
             external_work: 8192.0,
             baseline: 16384.0,
@@ -339,9 +338,7 @@ mod tests {
             ledger,
             displacement_max: 1.0,
             velocity_max: 2.0,
-            open_contacts: 3,
-            slipping_contacts: 4,
-            locked_contacts: 5,
+            contacts: ContactCounts { open: 3, slipping: 4, locked: 5 },
             penetration_max: 6.0,
             unbalanced: 7.0,
             critical_dt: 8.0,
