@@ -9,14 +9,15 @@
 pub struct EntranceRule {
     /// Height of a ledge up to which it holds nothing; a ledge of twice the height holds in full.
     pub ledge: f64,
-    /// Upper bound of the penetration of contacts: corners that are deeper do not touch by springs alone.
+    /// Upper bound of the compression of springs: a greater depth is no compression.
     pub closure_most: f64,
     /// Sine of the angle up to which two facing sides count as parallel, and by which a neighbour of a node may lie
     /// inside the edge that the node enters: 10°.
     pub flush_sine: f64,
     /// Cosine from which two sides of a block face away from each other, with rock between them: 60°.
     pub opposed_cosine: f64,
-    /// Distance beyond a corner up to which a contact that carries force is kept.
+    /// Band at the end of a side: a foot within it counts as over the edge, and a contact that carries force there
+    /// hands over to the next one.
     pub held_beyond: f64,
     /// Depth from which a new contact starts without force.
     pub deep: f64,
@@ -98,8 +99,8 @@ impl EntranceRule {
         (1.0 - self.flush_sine * self.flush_sine).sqrt()
     }
 
-    /// Depth (over the mesh size) of a second facet that no spring explains: without the compression of springs, which
-    /// is at most `closure_most`, it still is deeper than a first one of less than that.
+    /// Depth (over the mesh size) of the other facet from which springs need no count. They shorten it by
+    /// `closure_most` at most, so that it stays deeper than a candidate that is less deep than `closure_most`.
     pub fn clear_depth(&self) -> f64 {
         2.0 * self.closure_most
     }

@@ -127,9 +127,9 @@ impl Cosimulation {
         Err(CosimulationError::value("block", block, &limit, "ask for the states of the blocks to see their ids"))
     }
 
-    fn check_port(&self, port: usize, kinds: &[PortKind], what: &str) -> Result<String, CosimulationError> {
+    fn check_port(&self, port: usize, kinds: &[PortKind], what: &str) -> Result<&str, CosimulationError> {
         match self.ports().get(port) {
-            Some(found) if kinds.contains(&found.kind) => Ok(found.name.clone()),
+            Some(found) if kinds.contains(&found.kind) => Ok(&found.name),
             Some(found) => Err(CosimulationError::value("port", &found.name, what, "use the input of its own kind")),
             None => {
                 let limit = format!("less than the number of ports, {}", self.ports().len());

@@ -6,7 +6,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
 use crate::state::{Drive, Model, Port, State};
 
-use super::quiet;
+use super::{Substep, quiet};
 
 /// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
 /// base by (Eq. 31).
@@ -16,8 +16,17 @@ pub fn acceleration(model: &Model, state: &State, t: f64) -> Vector {
     state.drive.gravity(share) + body - state.drive.base_acceleration(share)
 }
 
+/// Forces (N/m per cover) of loads and inputs while a sub-step acts; none when nothing pushes.
+pub(super) fn load(model: &Model, state: &State, step: &Substep, force: &mut Vec<Vector>) {
+    force.clear();
+    if pushes(model, state) {
+        force.resize(model.covers.cover_count(), Vector::zeros());
+        push_forces(model, state, step.time, step.ramp(state), force);
+    }
+}
+
 /// Whether [`push_forces`] may add anything but zero.
-pub fn pushes(model: &Model, state: &State) -> bool {
+fn pushes(model: &Model, state: &State) -> bool {
     let Drive { from, to, .. } = &state.drive;
     let any = |values: &[Vector]| values.iter().any(|v| *v != Vector::zeros());
     let any_scalar = |values: &[f64]| values.iter().any(|v| *v != 0.0);
@@ -94,20 +103,29 @@ impl Faces<'_> {
         for &edge in &port.edges {
             let length = (reference[self.model.boundary.after(edge)] - reference[edge]).norm();
             let dead = traction * (0.5 * length);
-            self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
+            if pressure == 0.0 {
+                self.spread(edge, [dead; 2], force);
+            } else {
+                self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
+            }
         }
     }
 
-    /// Spreads the forces at both ends of an edge over their covers.
+    /// Forces at both ends of an edge, given their current positions.
     fn push(&self, edge: EdgeId, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
+        let boundary = &self.model.boundary;
+        let stars = &self.model.covers.star_position;
+        let position = |k: EdgeId| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement);
+        self.spread(edge, forces(position(edge), position(boundary.after(edge))), force);
+    }
+
+    /// Spreads forces at both ends of an edge over their covers.
+    fn spread(&self, edge: EdgeId, forces: [Vector; 2], force: &mut [Vector]) {
         let boundary = &self.model.boundary;
         if self.state.removed[boundary.block[edge]] {
             return;
         }
-        let ends = [edge, boundary.after(edge)];
-        let stars = &self.model.covers.star_position;
-        let [a, b] = ends.map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement));
-        for (k, f) in ends.into_iter().zip(forces(a, b)) {
+        for (k, f) in [edge, boundary.after(edge)].into_iter().zip(forces) {
             mechanics::spread(&boundary.covers[k], &boundary.weights[k], f, force);
         }
     }

@@ -1,5 +1,7 @@
 //! A sub-step, found once for all its stages: how long covers move, and how long and when forces act.
 
+use crate::state::State;
+
 use super::Regime;
 
 /// Simulated time that an integrator is asked to cover.
@@ -48,5 +50,10 @@ impl Substep {
     pub fn new(StepInterval { regime, time, dt, report }: StepInterval, before: f64, serial: bool) -> Self {
         let window = Window { from: time - 0.5 * before, to: time + 0.5 * dt };
         Self { regime, time, dt, kick: 0.5 * (before + dt), window, report, serial }
+    }
+
+    /// Share of gravity and of inputs that acts at its start.
+    pub fn ramp(&self, state: &State) -> f64 {
+        super::ramp(self.regime, self.time - state.stage_start)
     }
 }

@@ -37,7 +37,7 @@ impl NarrowPhase<'_> {
     /// springs unloaded: only the part of a face that lies against the other one carries force.
     #[inline(always)]
     pub(super) fn tributary(&self, node: NodeId, candidate: &ContactCandidate) -> Tributary {
-        let [start, finish] = candidate.overlap;
+        let [start, finish] = candidate.lengths;
         let EntranceRule { ledge, length_floor, stiffness_floor, .. } = self.rule.constants;
         let ramp = |overlap: f64| (overlap / (ledge * self.rule.size) - 1.0).clamp(0.0, 1.0);
         let at_ends = ramp(start.min(finish));
@@ -79,7 +79,7 @@ impl NarrowPhase<'_> {
         if q > p {
             let beyond =
                 if high > 0.0 { high * self.reach_beyond(boundary.nodes.next[after], to, q, candidate) } else { 0.0 };
-            add(over(q) + beyond, q - p, frame.distance[0], candidate.overlap[1]);
+            add(over(q) + beyond, q - p, frame.distance[0], candidate.lengths[1]);
         }
         if r < p {
             let beyond = if low > 0.0 {
@@ -87,7 +87,7 @@ impl NarrowPhase<'_> {
             } else {
                 0.0
             };
-            add(over(r) + beyond, p - r, frame.distance[1], candidate.overlap[0]);
+            add(over(r) + beyond, p - r, frame.distance[1], candidate.lengths[0]);
         }
         facing
     }
@@ -135,7 +135,7 @@ impl NarrowPhase<'_> {
             if within < band && at.edge == candidate.edge && at.corner == Corner::Convex {
                 let kept = |overlap: f64| within.max((overlap - band).min(0.0));
                 let is_past = candidate.is_held && within < 0.0;
-                let within = if is_past { kept(self.rule.overlap_at(candidate, end)) } else { within };
+                let within = if is_past { kept(self.rule.depth_at_end(candidate, end)) } else { within };
                 share = share.min(least + (1.0 - least) * within / band);
             }
         }

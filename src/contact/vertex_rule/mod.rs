@@ -73,8 +73,8 @@ pub struct ContactCandidate {
     pub is_held: bool,
     /// Whether the node is over the edge: it misses it by no more than a bend of the boundary explains.
     pub is_over: bool,
-    /// Overlap (m) along the side before its start and its finish, with springs unloaded.
-    pub overlap: [f64; 2],
+    /// Length (m) along the side over which both blocks overlap before its start and its finish.
+    pub lengths: [f64; 2],
     /// Whether the node enters the edge, as far as the rules have been applied.
     pub accepted: bool,
 }
@@ -114,7 +114,7 @@ impl VertexRule<'_> {
             held,
             is_held: held.is_some_and(|known| self.history[known as usize].state != ContactState::Open),
             is_over: beyond <= self.constants.wedge_ratio * gap.abs() + self.constants.held_beyond * self.size,
-            overlap: [f64::INFINITY; 2],
+            lengths: [f64::INFINITY; 2],
             accepted: false,
         }
     }
@@ -150,8 +150,8 @@ impl VertexRule<'_> {
         if !(self.is_near(&candidate) && is_considered(&candidate) && self.faces_edge(&candidate)) {
             return None;
         }
-        let overlap = self.overlap_at_ends(&candidate)?;
-        (!self.is_spurious(&candidate)).then_some(ContactCandidate { overlap, accepted: true, ..candidate })
+        let lengths = self.lengths_at_ends(&candidate)?;
+        (!self.is_spurious(&candidate)).then_some(ContactCandidate { lengths, accepted: true, ..candidate })
     }
 
     /// Whether the gap, less that of the unloaded spring, is within reach.

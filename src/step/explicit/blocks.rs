@@ -1,14 +1,11 @@
-//! Data of a block for kick and end of a step: its masses, its damping, and the velocity that its parts share.
+//! Data of a block for kick and end of a step: its masses, and the velocity that its parts share.
 
 use std::ops::Range;
 
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{RigidScatter, RigidVelocity};
-use crate::mechanics::{Chunk, Damping, MassMatrix};
-use crate::state::Model;
-
-use super::DECAY_MAX;
+use crate::mechanics::{Chunk, MassMatrix};
 
 /// Rigid-body velocity that the covers of a chunk receive from their block, when it can move.
 pub(super) fn scatter<'a>(
@@ -31,25 +28,4 @@ pub(super) fn inverse(mass_matrix: &MassMatrix, movable: bool, covers: Range<usi
 /// Masses by which covers count in the centroid of a block: those of a held one are its lumped ones, read once.
 pub(super) fn inertial(mass_matrix: &MassMatrix, block: BlockId) -> &[f64] {
     if mass_matrix.is_free(block) { &mass_matrix.inertial } else { &mass_matrix.mass }
-}
-
-/// Whether damping takes anything.
-pub(super) fn is_damping(damping: Damping) -> bool {
-    let (Damping::Deformation(factor) | Damping::Mass(factor)) = damping;
-    factor < 1.0
-}
-
-/// Damping factor of one block: exp(−2ξπ·cs/√A·dt) relative to its rigid motion; or the common one, of a block that is
-/// lighter by the root of that faster (Eq. 76).
-pub(super) fn block_damping(model: &Model, mass_matrix: &MassMatrix, damping: Damping, block: BlockId) -> Damping {
-    match damping {
-        Damping::Deformation(ratio_dt) if ratio_dt > 0.0 => {
-            Damping::Deformation(libm::exp(-(ratio_dt * model.block_frequency[block]).min(DECAY_MAX)))
-        }
-        Damping::Deformation(_) => Damping::Deformation(1.0),
-        Damping::Mass(factor) if mass_matrix.lightness > 1.0 && mass_matrix.is_free(block) => {
-            Damping::Mass(libm::pow(factor, mass_matrix.lightness.sqrt()).max(libm::exp(-DECAY_MAX)))
-        }
-        mass => mass,
-    }
 }

@@ -9,7 +9,7 @@ use super::bonds::{has_bonds, settle_bonds};
 use super::chunk_runs::{self, ChunkSlices};
 use super::columns::move_columns;
 use super::finish::Finish;
-use super::predict::acceleration;
+use super::kick::acceleration;
 use super::settle::{settle_contacts, settle_supports};
 use super::turn::turn;
 use super::works::{contact_works, external_work, extra};

@@ -9,8 +9,9 @@ use crate::mechanics::block_lanes::{FinishFlags, FinishSlices, RigidVelocity, Wo
 use crate::mechanics::{BlockMotion, BlockStart, Damping, MassMatrix};
 use crate::state::{ChunkSums, Model};
 
-use super::blocks::{inertial, is_damping, scatter};
+use super::blocks::{inertial, scatter};
 use super::chunk_runs::{self, ChunkLoop, ChunkSlices};
+use super::damp::is_damping;
 
 /// Share of the square of the distance of failure below which no mean over covers reaches it, however it is rounded.
 const NEAR: f64 = 0.99;

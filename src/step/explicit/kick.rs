@@ -9,16 +9,17 @@ use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{CoverKick, Reference, RigidVelocity, Span};
 use crate::mechanics::{BlockMotion, BlockStart, Chunk, Damping, Deformation, KickStep, MassMatrix, element_lanes};
-use crate::state::{ChunkSums, Model, State};
+use crate::state::{ChunkSums, Model, MotionBuffers, State, YieldBuffers};
 
 use super::blocks::{inertial, inverse, scatter};
 use super::chunk_runs::{self, ChunkLoop, ChunkSlices};
+use super::{Substep, applied, records};
 
 /// Covers from which on a step does not find them in the caches, and the next chunk is prefetched.
 const ASKED: usize = 1 << 17;
 
 /// Data that every block of a step shares.
-pub(super) struct Kick<'a> {
+struct Kick<'a> {
     pub model: &'a Model,
     pub state: &'a State,
     pub mass_matrix: &'a MassMatrix,
@@ -39,6 +40,44 @@ pub(super) struct Kick<'a> {
     pub deformations: &'a [Option<Deformation>],
     /// Mean stress (Pa) of each patch of elements that average it.
     pub patch_mean: &'a [[f64; 2]],
+}
+
+/// Internal forces and the kick of every block, with the forces of loads and without those of contacts.
+pub(super) fn predict(
+    model: &Model,
+    state: &State,
+    step: &Substep,
+    (load_force, yielding): (&[Vector], &YieldBuffers),
+    mass_matrix: &mut MassMatrix,
+    motion: &mut MotionBuffers,
+    sums: &mut [ChunkSums],
+) {
+    let MotionBuffers { predicted, blocks, start, damping, movable, exposed, speed_max, .. } = motion;
+    let kick = Kick {
+        model,
+        state,
+        mass_matrix,
+        acceleration: acceleration(model, state, step),
+        damping,
+        movable,
+        exposed,
+        kick: step.kick,
+        grain: chunk_runs::grain(step.serial),
+        load_force,
+        deformations: &yielding.deformations,
+        patch_mean: &yielding.averages.patch_mean,
+    };
+    kick.run(ChunkSlices { velocity: predicted, motion: blocks, start, sums, ..ChunkSlices::default() });
+    *speed_max = sums.iter().map(|s| s.fastest).fold(0.0, f64::max).sqrt();
+    for (spin, motion) in mass_matrix.spin.iter_mut().zip(blocks) {
+        *spin = motion.spin;
+    }
+}
+
+/// Acceleration of all rock (m/s²) while forces act.
+pub(super) fn acceleration(model: &Model, state: &State, step: &Substep) -> Vector {
+    let base = records::base_motion(model, step.regime, state, step.window);
+    applied::acceleration(model, state, step.time) * step.ramp(state) - base
 }
 
 impl Kick<'_> {
@@ -230,7 +269,7 @@ impl Kick<'_> {
     }
 
     /// Fills predicted velocities, block motions, and the sums of chunks with the largest speed before.
-    pub fn run(&self, mut out: ChunkSlices) {
+    fn run(&self, mut out: ChunkSlices) {
         let chunks = &self.model.chunks;
         let ChunkSlices { velocity, displacement, motion, start, sums } = &mut out;
         chunk_runs::run(self, chunks, ChunkSlices { velocity, displacement, motion, start, sums }, self.grain);

@@ -4,9 +4,9 @@ mod blocks;
 mod chunk_runs;
 mod columns;
 mod commit;
+mod damp;
 mod finish;
 mod kick;
-mod predict;
 mod touch;
 mod turn;
 mod works;
@@ -22,11 +22,12 @@ use crate::state::{Counters, Model, State, Workspace};
 use super::contacts::{self, Reach};
 use super::friction::delay_friction;
 use super::integrator::{Integrator, StepOutcome};
-use super::{Regime, StepInterval, StepReport, Substep, applied, bonds, guard, quiet, ramp, records, report, settle};
+use super::{Regime, StepInterval, StepReport, Substep, applied, bonds, guard, quiet, records, report, settle};
 
 use columns::kick_columns;
 use commit::commit;
-use predict::{damp, load, predict};
+use damp::damp;
+use kick::predict;
 use touch::{answer, approach, arrange, open_close, touch};
 use yielding::yield_rock;
 
@@ -94,7 +95,7 @@ fn set_out(model: &Model, state: &mut State, step: &Substep, workspace: &mut Wor
     contacts::search(model, state, &mass_matrix.fixed, frames, selection, &mut sweep.open_close, step.serial);
     seconds.search += lap(&mut clock);
     yield_rock(model, state, step, mass_matrix, yielding);
-    load(model, state, step, load_force);
+    applied::load(model, state, step, load_force);
     damp(model, state, step, mass_matrix, motion);
     predict(model, state, step, (load_force, yielding), mass_matrix, motion, sums);
     kick_columns(model, state, step, &mut motion.columns);

@@ -4,7 +4,7 @@ use crate::geometry::Vector;
 use crate::state::{ContactOutcome, Ledger, Model, State, SupportBuffers};
 
 use super::Substep;
-use super::predict::acceleration;
+use super::kick::acceleration;
 
 /// Acceleration (m/s²) beyond gravity while forces act: its work is external.
 pub(super) fn extra(model: &Model, state: &State, step: &Substep) -> Vector {
