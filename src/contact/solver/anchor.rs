@@ -1,9 +1,9 @@
 //! Bodies under impulses: what a material point of a block moves by, and what its block keeps of them (Eq. 17).
 
 use crate::contact::Pair;
+use crate::contact::pair::{common_share, velocity_of_body};
 use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
-use crate::mechanics::MassMatrix;
 
 use super::SolverView;
 
@@ -106,7 +106,8 @@ impl Anchor {
         let Some(block) = self.block else { return velocity };
         let [impulse, weighted, moment, _] =
             accumulators.block_impulse[block.index() - accumulators.first_block.index()];
-        velocity + impulse * (self.common - self.mass_share) - weighted + self.lever * (self.spin * moment.x)
+        let (share, turn) = (self.common - self.mass_share, self.spin * moment.x);
+        velocity + Vector::from(velocity_of_body(impulse.into(), weighted.into(), turn, share, self.lever.into()))
     }
 
     /// Takes an impulse (N·s/m).
@@ -122,11 +123,4 @@ impl Anchor {
             block_impulse[2].x += self.lever.dot(&impulse);
         }
     }
-}
-
-/// (1 + S/M)/M of a block (m/kg), 0 of a held one.
-#[inline(always)]
-pub fn common_share(mass_matrix: &MassMatrix, block: BlockId) -> f64 {
-    let inverse = mass_matrix.inverse_total[block];
-    (1.0 + mass_matrix.square[block] * inverse) * inverse
 }

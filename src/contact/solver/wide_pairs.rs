@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use enmm_lanes::{First, LANES, Lanes, Places, Values};
 
+use crate::contact::pair::common_share;
 use crate::cover::BlockId;
 
 use super::SolverView;
-use super::anchor::{Accumulators, PACKED, common_share};
+use super::anchor::{Accumulators, PACKED};
 use super::wide_block::{F64x8, WideBlock, first, put_first};
 use super::wide_contact::{ContactView, WideContact};
 use super::wide_point::Bodies;

@@ -2,11 +2,11 @@
 
 use enmm_lanes::{Arithmetic, LANES, Places, Values};
 
+use crate::contact::pair::{common_share, compliance_of_body, velocity_of_body};
 use crate::cover::{BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 use crate::mechanics::{BlockMotion, MassMatrix};
 
-use super::anchor::common_share;
 use super::wide_block::{F64x8, WideBlock};
 
 /// One material point of each contact. Numbers begin at lines of the cache.
@@ -124,10 +124,7 @@ impl Points {
         lanes.store(mass_share, &mut self.mass_share);
         let common = lanes.load(&blocks.common) - (mass_share + mass_share);
         let [along, across] = [lever[0] * x + lever[1] * y, lever[1] * x - lever[0] * y];
-        [
-            own[0] * x * x + own[1] * y * y + common + spin * along * along,
-            own[0] * y * y + own[1] * x * x + common + spin * across * across,
-        ]
+        [compliance_of_body(own, common, spin, [x, y], along), compliance_of_body(own, common, spin, [-y, x], across)]
     }
 
     /// Notes along which axis the `k`-th covers of some lanes are held.
@@ -193,11 +190,9 @@ impl Points {
         let (turn, lever) = (side.spin * side.moment, lever(side.centre, at));
         let x = (w * cover_impulse[0][0] + u * cover_impulse[1][0]) + v * cover_impulse[2][0];
         let y = (w * cover_impulse[0][1] + u * cover_impulse[1][1]) + v * cover_impulse[2][1];
-        let common = [
-            side.impulse[0] * share - side.unit * side.weighted[0] + lever[0] * turn,
-            side.impulse[1] * share - side.unit * side.weighted[1] + lever[1] * turn,
-        ];
-        [x + common[0], y + common[1]]
+        let weighted = [side.unit * side.weighted[0], side.unit * side.weighted[1]];
+        let of_body = velocity_of_body(side.impulse, weighted, turn, share, lever);
+        [x + of_body[0], y + of_body[1]]
     }
 
     /// They take impulses (N·s/m).
