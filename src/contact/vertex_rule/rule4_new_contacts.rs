@@ -10,12 +10,13 @@
 //! ```
 //!
 //! A shallow node may also be beside the rock, round a corner of the side: two tips that cross touch at a point where
-//! neither is inside the other. Deep is more than a node moves in a step.
+//! neither is inside the other. Deep is more than a node moves in a step, beyond the compression of springs that it
+//! brings from other sides.
 
 use crate::contact::{EdgeId, NodeId, SideId};
 use crate::geometry::segment;
 
-use super::{Boundary, ContactCandidate, VertexRule};
+use super::{Boundary, ContactCandidate, VertexRule, right_of};
 
 impl VertexRule<'_> {
     /// Whether a new candidate in penetration cannot be a contact.
@@ -37,12 +38,15 @@ impl VertexRule<'_> {
         depth <= tie && !meets
     }
 
-    /// Whether a candidate is deeper than a node moves in one step.
+    /// Whether a candidate is deeper than a node moves in one step, with the springs of the node's other contacts
+    /// unloaded: a node that slides from one side to the next brings their compression with it.
     pub(in crate::contact) fn is_deep(&self, candidate: &ContactCandidate) -> bool {
         let Boundary { block, block_thickness, nodes, .. } = self.boundary;
         let blocks = [nodes.point[candidate.node], candidate.edge].map(|point| block[point]);
         let thin = blocks.map(|b| block_thickness[b]).into_iter().fold(f64::INFINITY, f64::min);
-        -candidate.gap > (self.constants.deep * self.size).min(self.constants.deep_share * thin)
+        let most = (self.constants.deep * self.size).min(self.constants.deep_share * thin);
+        let brought = || self.closure_along(candidate.node, right_of(candidate.tangent), [candidate.side; 2]);
+        -candidate.gap > most && -candidate.gap - brought() > most
     }
 
     /// Depth (m) of a node in the rock within the loop of an edge, 0 outside, and the nearest side of the loop.
