@@ -31,7 +31,7 @@ pub struct ContactHistory {
     pub side: SideId,
     /// Edge of that side in the last step.
     pub edge: EdgeId,
-    /// What it keeps since its faces met.
+    /// Age and stiffness since its faces met.
     pub meeting: Meeting,
     /// Normal force at the end of the last step (N/m), compression positive.
     pub normal_force: f64,
@@ -57,7 +57,7 @@ pub struct ContactHistory {
     pub intact: bool,
 }
 
-/// What a contact keeps since its faces met: those of the node's block and the side.
+/// Age and stiffness of a contact since its faces met: those of the node's block and the side.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Meeting {
     /// Time (s) since they last parted. Infinite where a static stage has held the contact.

@@ -42,7 +42,7 @@ pub struct BlockState {
     pub kinetic_energy: f64,
     /// Strain energy (J/m).
     pub strain_energy: f64,
-    /// What its contacts show.
+    /// Number and penetration of its contacts.
     pub contacts: BlockContacts,
 }
 

@@ -112,7 +112,7 @@ fn a_bridge_at_the_end_of_a_fault_holds_by_its_width() {
 /// hold less, never more.
 #[test]
 fn long_a_slope_with_a_bridge_has_the_factor_of_jennings() {
-    let widths: [&[f64]; 3] = [&[0.3], &[1e-3, 1.0], &[1e-3, 0.1, 0.3, 1.0]];
+    let widths: [&[f64]; 3] = [&[0.3], &[1e-3, 0.1, 1.0], &[1e-3, 0.1, 0.3, 1.0]];
     for &width in by_extent(widths) {
         let [ductile, brittle] = [DUCTILE, ""].map(|energies| factor(&case(&near_miss(width, energies))));
         let exact = jennings_of_near_miss(width);

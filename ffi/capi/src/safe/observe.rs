@@ -292,8 +292,7 @@ fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
 
 #[cfg(test)]
 mod tests {
-    use engine::cosimulation::ContactCounts;
-    use engine::cosimulation::{Quantity, TOTALS};
+    use engine::cosimulation::{ContactCounts, Quantity, TOTALS};
     use engine::model::{BoltEnergies, ENERGIES};
 
     use super::*;
