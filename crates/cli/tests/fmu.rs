@@ -64,11 +64,12 @@ fn nothing_is_written_for_a_bad_case_or_a_bad_place() {
 
 #[test]
 fn a_program_without_libraries_says_where_it_looked() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
     let bin = folder.path().join("bin");
     std::fs::create_dir(&bin).unwrap();
     let program = bin.join(format!("enmm{}", std::env::consts::EXE_SUFFIX));
-    std::fs::copy(env!("CARGO_BIN_EXE_enmm"), &program).unwrap();
+    // A link, because a copy cannot start while a process that another test has just forked still has it open.
+    std::fs::hard_link(env!("CARGO_BIN_EXE_enmm"), &program).unwrap();
     let empty = tempfile::tempdir().unwrap();
     let output = run(&program, empty.path(), &[example().to_str().unwrap()]);
     let error = text(&output.stderr);
