@@ -27,6 +27,7 @@ mod host_inputs;
 mod impacts;
 mod in_situ_stress;
 mod issue_a_corner_sank_into_a_cracked_floor;
+mod issue_a_crack_tip_held_a_block;
 mod issue_a_crumb_decided_about_a_slope;
 mod issue_a_report_was_worked_out_twice;
 mod issue_blocks_in_each_other_were_not_seen;

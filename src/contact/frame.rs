@@ -58,6 +58,12 @@ impl NodeFrame {
         let (cross, dot) = (next.perp(&previous), next.dot(&previous));
         cross > 0.0 && (dot > 0.0 || cross > sine * before * after)
     }
+
+    /// Whether the boundary turns back at the node, up to an angle given by its sine: a spike, or a closed crack.
+    pub fn turns_back(&self, sine: f64) -> bool {
+        let ([previous, next], [before, after]) = (self.to, self.distance);
+        next.dot(&previous) > 0.0 && next.perp(&previous).abs() < sine * before * after
+    }
 }
 
 impl Frames {

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! The rock faces the edge if it is a corner of less than half a turn, or if the way from the previous node to the next
-//! one runs against the edge (up to 10°), as the boundaries of two bodies do that lie on each other.
+//! one runs against the edge (up to 10°), as the boundaries of two bodies do that lie on each other. The tip of a
+//! closed crack faces no edge: there is rock all round it.
 
 use super::{ContactCandidate, VertexRule, right_of};
 
@@ -24,6 +25,7 @@ impl VertexRule<'_> {
         let is_outside = |k: usize| frame.to[k].dot(&normal) >= -sine * frame.distance[k];
         let chord = frame.to[1] - frame.to[0];
         let runs_against = || -chord.dot(&candidate.tangent) > -sine * chord.norm();
-        is_outside(0) && is_outside(1) && (frame.is_convex(sine) || runs_against())
+        let is_crack_tip = || !self.boundary.nodes.convex[candidate.node] && frame.turns_back(sine);
+        is_outside(0) && is_outside(1) && (frame.is_convex(sine) || runs_against()) && !is_crack_tip()
     }
 }
