@@ -100,6 +100,12 @@ fn rock_mass(mass: &RockMass) -> String {
     )
 }
 
+/// The default normal stiffness of joints, and that of finer meshes.
+fn joint_stiffness([here, fine]: [f64; 2]) -> String {
+    let finer = if here < fine { format!(" on this mesh, {fine:.3e} on meshes up to 1 m") } else { String::new() };
+    format!("{here:.3e} by default{finer}")
+}
+
 fn json_line(found: &Check) -> String {
     serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }
@@ -125,13 +131,14 @@ fn table(found: &Check) -> String {
         ("initial contacts", found.initial_contacts.to_string()),
         ("critical dt (s)", format!("{:.4e}", found.critical_dt)),
         ("friction delay (ms)", format!("{:.2} in dynamic stages", 1e3 * found.friction_delay)),
+        ("joint stiffness (Pa/m)", found.default_stiffness.map_or("given".to_owned(), joint_stiffness)),
         ("small covers treated", found.small_covers_treated.to_string()),
         ("tiny blocks", found.tiny_blocks.to_string()),
         ("merged vertices", found.merged_vertices.to_string()),
         ("ignored joints", found.ignored_joints.to_string()),
         ("memory (MB)", memory(found)),
     ];
-    let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<21} {value}")).collect();
+    let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<22} {value}")).collect();
     lines.extend(found.rock_masses.iter().map(rock_mass));
     lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use enmm::geometry::Point;
-use enmm::model::assemble::ignored_traces;
+use enmm::model::assemble::{STIFFNESS_LENGTH, ignored_traces};
 use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
 
@@ -46,6 +46,9 @@ pub struct Check {
     pub critical_dt: f64,
     /// Delay of friction in a dynamic stage that begins with the untouched model (s).
     pub friction_delay: f64,
+    /// Normal stiffness (Pa/m) of joints whose law gives none, on this mesh and on meshes up to one metre; none where
+    /// every law gives one.
+    pub default_stiffness: Option<[f64; 2]>,
     /// Covers with less than a thousandth of a full cover's mass, which only equal thirds keep from ruling the step.
     pub small_covers_treated: usize,
     /// Blocks with less than a thousandth of a lattice triangle's area.
@@ -95,6 +98,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         initial_contacts: workspace.contacts.len(),
         critical_dt: model.critical_dt,
         friction_delay: simulation.friction_delay(&workspace),
+        default_stiffness: default_stiffness(simulation),
         small_covers_treated: small_covers(simulation, 2.0 * triangle),
         tiny_blocks: block_areas.iter().filter(|area| **area < TINY_BLOCK * triangle).count(),
         block_areas,
@@ -108,6 +112,13 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         notes: built.notes.clone(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
+}
+
+fn default_stiffness(simulation: &Simulation) -> Option<[f64; 2]> {
+    let (case, model) = (simulation.case(), simulation.model());
+    let law = case.joint_laws.values().zip(&model.laws).find(|(law, _)| law.normal_stiffness.is_none())?.1;
+    let coarse = (model.covers.mesh.size / STIFFNESS_LENGTH).max(1.0);
+    Some([law.normal_stiffness, law.normal_stiffness * coarse])
 }
 
 /// A part of the memory that a model needs while it runs.

@@ -1,5 +1,6 @@
 //! Tests of what a run writes.
 
+mod default_stiffness;
 #[path = "../../../tests/common/extent.rs"]
 mod extent;
 mod history;

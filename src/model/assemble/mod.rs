@@ -121,7 +121,7 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 
 /// Length (m) of rock that gives joints their default stiffness. Meshes that are coarser than this give it by their
 /// size, since they do not resolve stiffer joints.
-const STIFFNESS_LENGTH: f64 = 1.0;
+pub const STIFFNESS_LENGTH: f64 = 1.0;
 
 /// The fixed part of the model, and the warnings about its bolts.
 fn model(
