@@ -134,10 +134,9 @@ impl Footing {
 /// for the plateau over a doubling of the settlement, 2 % for the mesh; triangles that lock bear 14 % too much, and
 /// more and more.
 #[test]
-fn a_footing_on_clay_bears_what_prandtl_found() {
+fn long_a_footing_on_clay_bears_what_prandtl_found() {
     let exact = 2.0 + std::f64::consts::PI;
-    for &(stiffness, rows) in by_extent([&[(2e4, 10.0)][..], &[(2e4, 20.0)], &[(2e3, 20.0), (2e4, 20.0), (2e5, 20.0)]])
-    {
+    for &(stiffness, rows) in by_extent([&[(2e4, 10.0)][..], &[(2e4, 20.0)], &[(2e4, 20.0), (2e5, 20.0)]]) {
         let mut simulation = ground(stiffness, rows);
         let footing = Footing::on(&simulation);
         let end = 80.0 / stiffness;

@@ -147,8 +147,11 @@ fn bolts_are_an_active_or_a_passive_support_as_the_case_says() {
         let driving = weight * dip.sin() - tension * (dip + fall).cos();
         let exact = (40.0 * length + normal * friction) / driving;
         let set = format!("bolt_pattern[0].support={support}");
-        for command in ["fos", "bound"] {
-            let answer = place.enmm(&[command, "slope.toml", "--set", &set, "--json"]);
+        let [low, high] = [0.95, 1.05].map(|share| (share * exact).to_string());
+        let range = ["--low", &low, "--high", &high];
+        for (command, range) in [("fos", &range[..]), ("bound", &[])] {
+            let asked = [command, "slope.toml", "--set", "mesh.size=3", "--set", &set, "--json"];
+            let answer = place.enmm(&[&asked[..], range].concat());
             assert_eq!(answer.status, Some(0), "{answer:?}");
             let found: serde_json::Value = serde_json::from_str(&answer.stdout).expect("an object");
             let factor = match command {
@@ -188,12 +191,14 @@ fn a_chip_is_named_beside_the_slope() {
     assert_eq!(json(&place.path("out/fos.json"))["factor_of_safety"].as_f64(), Some(chip));
 }
 
-/// Before its bolts are installed, the cut has the factor of its formula without them (`road_cut.toml`).
+/// Before its bolts are installed, the cut has the factor of its formula without them (`road_cut.toml`). That it has it
+/// within half a percent is for the tests of the tutorial to find: trials as close as that creep for a minute.
 #[test]
 fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
     let place = Place::with("");
     let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
-    let answer = place.enmm(&["fos", case, "--stage", "gravity", "-o", "out", "--no-pictures"]);
+    let search = ["fos", case, "--stage", "gravity", "--tolerance", "0.03", "-o", "out", "--no-pictures"];
+    let answer = place.enmm(&search);
     assert_eq!(answer.status, Some(0), "{answer:?}");
     let found = json(&place.path("out/fos.json"));
     let factor = found["factor_of_safety"].as_f64().expect("a factor");
@@ -214,8 +219,9 @@ fn a_stage_that_draws_the_water_down_gives_the_dry_factor() {
     let text = fs::read_to_string(case).expect("an example");
     let text = text.replace("install = [\"rows\"]", "water = { level = -20.0 }");
     fs::write(place.path("case.toml"), text).expect("a case");
-    for (command, key) in [("fos", "factor_of_safety"), ("bound", "level_tops")] {
-        let answer = place.enmm(&[command, "case.toml", "--json"]);
+    let near = ["--low", "1.1", "--high", "1.2"];
+    for (command, key, range) in [("fos", "factor_of_safety", &near[..]), ("bound", "level_tops", &[])] {
+        let answer = place.enmm(&[&[command, "case.toml", "--json"], range].concat());
         assert_eq!(answer.status, Some(0), "{answer:?}");
         let found: serde_json::Value = serde_json::from_str(&answer.stdout).expect("an object");
         let factor = found[key].as_f64().or(found[key]["factor"].as_f64()).expect("a factor");

@@ -84,37 +84,21 @@ fn wedge_as_its_comment_says(all: &str, name: &str, text: &str, exact: f64) -> f
     found
 }
 
+/// Limit analysis agrees with the formula within the rounding of the coordinates. Trials close to the factor creep for
+/// half a minute of computing: the quick form leaves strength reduction out.
 #[test]
 fn long_the_road_cut_has_the_factors_of_hoek_and_bray() {
     let all = text("road_cut");
-    let [_, (dry, exact)] = without_bolts(&all);
-    wedge_as_its_comment_says(&all, "dry, no bolts", &dry, exact);
-    if extent() >= Extent::Full {
-        wedge_as_its_comment_says(&all, "water and bolts", &all, hoek_and_bray(3.0, 3.0 * 250e3 / 2.0));
-    }
-}
-
-/// Two trials close to the factor creep for half a minute of computing; the small version leaves strength reduction
-/// out.
-#[test]
-fn long_the_road_cut_without_bolts_has_the_factor_of_hoek_and_bray() {
-    let all = text("road_cut");
-    let [(wet, exact), _] = without_bolts(&all);
-    let limit = limit(&wet);
-    assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
-    if extent() >= Extent::Full {
-        wedge_as_its_comment_says(&all, "water, no bolts", &wet, exact);
-    }
-}
-
-/// Limit analysis agrees with the formula within the rounding of the coordinates.
-#[test]
-fn limit_analysis_of_the_road_cut_gives_hoek_and_bray() {
-    let all = text("road_cut");
-    let [_, (dry, dry_exact)] = without_bolts(&all);
-    for (text, exact) in [(&all, hoek_and_bray(3.0, 3.0 * 250e3 / 2.0)), (&dry, dry_exact)] {
-        let found = limit(text);
-        assert!((found / exact - 1.0).abs() < 3e-4, "{found} instead of {exact}");
+    let [(wet, wet_exact), (dry, dry_exact)] = without_bolts(&all);
+    let bolted = hoek_and_bray(3.0, 3.0 * 250e3 / 2.0);
+    let rows =
+        [("water and bolts", &all, bolted), ("water, no bolts", &wet, wet_exact), ("dry, no bolts", &dry, dry_exact)];
+    for (name, text, exact) in rows {
+        let limit = limit(text);
+        assert!((limit / exact - 1.0).abs() < 3e-4, "{name}: bound {limit} instead of {exact}");
+        if extent() >= Extent::Full {
+            wedge_as_its_comment_says(&all, name, text, exact);
+        }
     }
 }
 
@@ -187,13 +171,16 @@ fn the_pit_is_dug_in_three_stages() {
 
 /// The wedge on the fault of the finished pit has the factor tan φ / tan ψ of a body on a plane without cohesion.
 #[test]
-fn the_finished_pit_has_the_factor_of_its_wedge() {
+fn long_the_finished_pit_has_the_factor_of_its_wedge() {
     let text = text("pit");
     let exact = 44f64.to_radians().tan() / (15.5 / 19.0);
-    let (found, limit) = (factor(&text), limit(&text));
-    assert!((found / exact - 1.0).abs() < 5e-3, "{found} instead of {exact}");
+    let limit = limit(&text);
     assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
-    assert!(text.contains(&format!("{exact:.4}. enmm fos: {found:.4}")), "{exact} {found}");
+    if extent() >= Extent::Full {
+        let found = factor(&text);
+        assert!((found / exact - 1.0).abs() < 5e-3, "{found} instead of {exact}");
+        assert!(text.contains(&format!("{exact:.4}. enmm fos: {found:.4}")), "{exact} {found}");
+    }
 }
 
 /// The first line of every example leads editors to the schema.
@@ -216,8 +203,10 @@ fn long_the_step_path_has_the_factors_of_its_page_and_breaks_in_the_rain() {
     let ductile = text("step_path");
     let brittle = ductile.replace("tension_energy = 20\n", "").replace("shear_energy = 500", "shear_energy = 1");
     assert!((limit(&ductile) - 1.87).abs() < 0.01, "{}", limit(&ductile));
-    let [soft, hard] = [&ductile, &brittle].map(|text| factor(text));
-    assert!((soft - 1.38).abs() < 0.01 && (hard - 1.04).abs() < 0.01, "{soft} and brittle {hard}");
+    if extent() >= Extent::Full {
+        let [soft, hard] = [&ductile, &brittle].map(|text| factor(text));
+        assert!((soft - 1.38).abs() < 0.01 && (hard - 1.04).abs() < 0.01, "{soft} and brittle {hard}");
+    }
     let mut simulation = simulation(&ductile);
     run_all(&mut simulation);
     let broken = simulation.state().counters.broken;
