@@ -358,6 +358,20 @@ impl Case {
         least.is_finite().then_some(least)
     }
 
+    /// A warning where water stands in rock whose strength grows with pressure: that rock has no pore pressure.
+    pub fn pore_pressure_left_out(&self) -> Option<String> {
+        let starts = self.water.as_ref().map(Water::surface)?;
+        let later = self.stages.iter().filter_map(|stage| stage.water.as_ref());
+        let top = later.map(WaterSurface::highest).fold(starts.highest(), f64::max);
+        let bottom = self.domain.outline.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+        let (name, _) = self.rocks.iter().find(|(_, rock)| top > bottom && rock.rubs())?;
+        Some(format!(
+            "rock.{name}: yields with friction, but `[water]` up to y = {top} m presses on faces and joints alone: \
+             this rock has no pore pressure, and where water stands in it, it is too strong; give its undrained \
+             strength (`cohesion`, with `friction_deg = 0`)"
+        ))
+    }
+
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
     pub fn is_whole(&self) -> bool {
         self.joints.is_empty() && self.joint_sets.is_empty() && self.bridges.is_empty() && self.bolts.is_empty()
@@ -368,6 +382,11 @@ impl Rock {
     /// Whether the rock has a strength that can be exceeded.
     pub fn yields(&self) -> bool {
         self.friction_deg.is_some() || self.cohesion.is_some() || self.hoek_brown.is_some()
+    }
+
+    /// Whether the strength of the rock grows with the pressure on it.
+    pub fn rubs(&self) -> bool {
+        self.friction_deg.is_some_and(|angle| angle > 0.0) || self.hoek_brown.is_some()
     }
 
     /// Whether the rock swells when it yields.

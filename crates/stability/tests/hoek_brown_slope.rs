@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::common::extent::by_extent;
+use crate::common::extent::{Extent, by_extent, extent};
 use enmm::model::Case;
 use enmm_stability::limit_analysis::bound;
 use enmm_stability::limit_analysis::continuum::bracket;
@@ -13,12 +13,12 @@ use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 /// mi 2, GSI 5, D 0: 1.15 by strength reduction and by Bishop's method.
 const PUBLISHED: f64 = 1.15;
 
-/// The slope with so many elements over its height at a mesh angle (degrees), and more keys of its strength.
-fn slope(rows: f64, angle: f64, more: &str) -> Case {
+/// The slope with so many elements over its height at a mesh angle (degrees), and the joints in it.
+fn slope(rows: f64, angle: f64, joints: &str) -> Case {
     let text = format!(
         "title = \"slope\"\n[domain]\noutline = [[0, 0], [35, 0], [35, 5], [25, 5], [15, 15], [0, 15]]\n[mesh]\n\
          size = {:e}\nangle_deg = {angle:e}\n[rock.mass]\ndensity = {:e}\nyoung = 125e6\npoisson = 0.3\n\
-         hoek_brown = {{ sigma_ci = 30e6, mi = 2, gsi = 5{more} }}\n[[fix]]\nedge = [[0, 0], [35, 0]]\n[[fix]]\n\
+         hoek_brown = {{ sigma_ci = 30e6, mi = 2, gsi = 5 }}\n{joints}[[fix]]\nedge = [[0, 0], [35, 0]]\n[[fix]]\n\
          edge = [[0, 0], [0, 15]]\naxes = \"x\"\n[[fix]]\nedge = [[35, 0], [35, 5]]\naxes = \"x\"\n[[stage]]\n\
          name = \"settle\"\nkind = \"static\"\nduration = 60\n",
         10.0 / rows,
@@ -42,6 +42,32 @@ fn the_factor_of_a_slope_is_that_of_hammah_and_others() {
         assert!(reduction.trials.iter().all(|t| t.ledger_residual.abs() < 1e-3));
         assert!((factor / PUBLISHED - 1.0).abs() < 0.03, "{rows} {angle}°: {factor}");
         assert!(factor > 0.99 * lower && factor < 1.01 * upper, "{rows} {angle}°: {factor}, {lower} to {upper}");
+    }
+}
+
+/// A joint as strong as the rock changes nothing, and a weak layer takes the slope down: both bounds with it and, in
+/// the full form, the factor between them, as far as 0.5 % of the bracket leaves open.
+#[test]
+fn long_a_weak_layer_in_the_rock_mass_takes_the_slope_down() {
+    let layer =
+        |law: &str, points: &str| format!("[joint_law.layer]\n{law}\n[[joint]]\nlaw = \"layer\"\npoints = {points}\n");
+    let whole = bracket(&slope(10.0, 20.0, ""), 1000).unwrap_or_else(|e| panic!("{e}"));
+    let strong = layer("friction_deg = 40\ncohesion = 2e5", "[[0, 9.2], [20.6, 9.4]]");
+    let flat = layer("friction_deg = 15\ncohesion = 5e3", "[[0, 7], [23, 7]]");
+    let steep = layer("friction_deg = 20\ncohesion = 5e3", "[[5, 15], [22, 8]]");
+    for (joints, is_weak) in [(strong, false), (flat, true), (steep, true)] {
+        let case = slope(10.0, 20.0, &joints);
+        let found = bracket(&case, 1000).unwrap_or_else(|e| panic!("{e}"));
+        let [lower, upper] = [found.lower.value(), found.upper.value()];
+        println!("{lower} to {upper}: {joints}");
+        assert_eq!(upper < whole.lower.value(), is_weak, "{lower} to {upper}");
+        if extent() >= Extent::Full {
+            let options = ReductionOptions::default();
+            let reduction = factor_of_safety(&case, &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+            let factor = reduction.factor().expect("a factor");
+            println!("factor {factor}");
+            assert!(factor > 0.995 * lower && factor < 1.005 * upper, "{factor}, {lower} to {upper}");
+        }
     }
 }
 
