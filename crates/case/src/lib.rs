@@ -364,7 +364,7 @@ impl Case {
         let later = self.stages.iter().filter_map(|stage| stage.water.as_ref());
         let top = later.map(WaterSurface::highest).fold(starts.highest(), f64::max);
         let bottom = self.domain.outline.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
-        let (name, _) = self.rocks.iter().find(|(_, rock)| top > bottom && rock.rubs())?;
+        let (name, _) = self.rocks.iter().find(|(_, rock)| top > bottom && rock.has_friction())?;
         Some(format!(
             "rock.{name}: yields with friction, but `[water]` up to y = {top} m presses on faces and joints alone: \
              this rock has no pore pressure, and where water stands in it, it is too strong; give its undrained \
@@ -385,7 +385,7 @@ impl Rock {
     }
 
     /// Whether the strength of the rock grows with the pressure on it.
-    pub fn rubs(&self) -> bool {
+    pub fn has_friction(&self) -> bool {
         self.friction_deg.is_some_and(|angle| angle > 0.0) || self.hoek_brown.is_some()
     }
 
