@@ -132,7 +132,7 @@ impl Footing {
 /// L. Prandtl (1920): a strip on clay bears (2 + π)c, however far it has gone down and however stiff the clay, as
 /// long as the corner of the footing does not turn the triangles beside it (by 2 % of h at the end of this way). 1 %
 /// for the plateau over a doubling of the settlement, 2 % for the mesh; triangles that lock bear 14 % too much, and
-/// more and more.
+/// more and more. Clay with E = 2 000 c is left out: on 20 triangles it sinks by 40 % of h until it flows.
 #[test]
 fn long_a_footing_on_clay_bears_what_prandtl_found() {
     let exact = 2.0 + std::f64::consts::PI;

@@ -350,9 +350,8 @@ impl Case {
     /// Young's modulus over the weight γH of the model (γ of the rock, H the height of the outline) of the rock that
     /// has least of it and yields; none without such rock or without gravity.
     pub fn least_stiffness(&self) -> Option<f64> {
-        let heights = || self.domain.outline.iter().map(|point| point[1]);
-        let height = heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min);
-        let weight = libm::hypot(self.gravity.x, self.gravity.y) * height;
+        let [bottom, top] = self.heights();
+        let weight = libm::hypot(self.gravity.x, self.gravity.y) * (top - bottom);
         let yielding = self.rocks.values().filter(|rock| rock.yields());
         let least = yielding.map(|rock| rock.young / (rock.density * weight)).fold(f64::INFINITY, f64::min);
         least.is_finite().then_some(least)
@@ -363,13 +362,19 @@ impl Case {
         let starts = self.water.as_ref().map(Water::surface)?;
         let later = self.stages.iter().filter_map(|stage| stage.water.as_ref());
         let top = later.map(WaterSurface::highest).fold(starts.highest(), f64::max);
-        let bottom = self.domain.outline.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+        let [bottom, _] = self.heights();
         let (name, _) = self.rocks.iter().find(|(_, rock)| top > bottom && rock.has_friction())?;
         Some(format!(
             "rock.{name}: yields with friction, but `[water]` up to y = {top} m presses on faces and joints alone: \
              this rock has no pore pressure, and where water stands in it, it is too strong; give its undrained \
              strength (`cohesion`, with `friction_deg = 0`)"
         ))
+    }
+
+    /// The lowest and the highest y of the outline (m).
+    fn heights(&self) -> [f64; 2] {
+        let heights = || self.domain.outline.iter().map(|point| point[1]);
+        [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
     }
 
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
