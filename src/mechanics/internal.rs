@@ -127,12 +127,14 @@ impl Deformation {
 
     /// Change of the volume change, to first order, while the three covers moved by `moved` (m): R:ΔF. A turn of the
     /// whole block has no part in it.
+    #[inline]
     pub fn dilatation_by(&self, moved: [Vector; 3], g: &[Vector; 3]) -> f64 {
         let [d11, d12, d21, d22] = gradient(0.0, moved, g);
         self.cos * (d11 + d22) + self.sin * (d21 - d12)
     }
 
     /// Strain RᵀF − I as xx, yy, xy in the axes that rotate with the element (Eq. 54).
+    #[inline]
     pub fn strain(&self) -> [f64; 3] {
         let d = self.stretch();
         let (c, s) = (self.cos, self.sin);
@@ -155,12 +157,14 @@ impl Deformation {
 
     /// (t₁₂(U₁₁ − U₂₂) − U₁₂(t₁₁ − t₂₂))/tr U of the stretch U = RᵀF and a tensor xx, yy, xy in its axes: zero when
     /// both have the same axes.
+    #[inline]
     pub fn skew(&self, [xx, yy, xy]: [f64; 3]) -> f64 {
         let strain = self.strain();
         (xy * (strain[0] - strain[1]) - strain[2] * (xx - yy)) / self.trace
     }
 
     /// R·t of a tensor, row by row.
+    #[inline]
     pub fn turn_rows(&self, t: [f64; 4]) -> [f64; 4] {
         let (c, s) = (self.cos, self.sin);
         [c * t[0] - s * t[2], c * t[1] - s * t[3], s * t[0] + c * t[2], s * t[1] + c * t[3]]

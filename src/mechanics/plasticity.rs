@@ -115,16 +115,19 @@ impl YieldingRock {
     }
 
     /// Elastic volume change of an element by which its mean stress in the plane goes (Eq. 58a).
+    #[inline]
     pub fn own_volume(&self, at: &Deformation, plastic: &PlasticStrain) -> f64 {
         at.dilatation() - volume(&self.elasticity, self.plane_stress, plastic)
     }
 
     /// How much (Pa) the mean stress of its patches differs from an element's own.
+    #[inline]
     fn more(&self, at: &Deformation, plastic: &PlasticStrain, mean: f64) -> f64 {
         mean - self.mean_stress(self.own_volume(at, plastic))
     }
 
     /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
+    #[inline]
     fn relief(&self, plastic: &PlasticStrain) -> [f64; 4] {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
@@ -134,6 +137,7 @@ impl YieldingRock {
     ///
     /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that they
     /// rotate no element (Eq. 58).
+    #[inline]
     pub fn forces(
         &self,
         at: &Deformation,
@@ -258,6 +262,7 @@ impl YieldSurface {
     /// elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
+    #[inline]
     pub fn growth(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
         let own = self.own_stress(at, plastic);
         let [xx, yy, xy] = at.deformation.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
@@ -286,6 +291,7 @@ impl YieldSurface {
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
+    #[inline]
     fn own_stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 4] {
         let Elasticity { lambda, mu, .. } = self.elasticity;
         let [xx, yy, xy] = at.deformation.strain();
@@ -339,17 +345,17 @@ struct Principal {
     sorted: [f64; 3],
     /// Which of (larger in the plane, smaller in the plane, out of the plane) each sorted one is.
     axis: [usize; 3],
-    /// Cosine and sine of twice the angle from x to the larger one in the plane.
-    double_angle: [f64; 2],
+    /// Half the difference of xx and yy, xy, and the radius of both.
+    circle: [f64; 3],
     /// Which sorted one costs no elastic stress: the one out of the plane in plane stress.
     free: Option<usize>,
 }
 
 impl Principal {
+    #[inline]
     fn of([xx, yy, xy, zz]: [f64; 4], plane_stress: bool) -> Self {
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let radius = libm::hypot(half, xy);
-        let double_angle = if radius > 0.0 { [half / radius, xy / radius] } else { [1.0, 0.0] };
+        let radius = (half * half + xy * xy).sqrt();
         let (a, b) = (mean + radius, mean - radius);
         let (sorted, axis) = match () {
             () if zz > a => ([zz, a, b], [2, 0, 1]),
@@ -357,7 +363,7 @@ impl Principal {
             () => ([a, zz, b], [0, 2, 1]),
         };
         let free = axis.iter().position(|&k| k == 2).filter(|_| plane_stress);
-        Self { sorted, axis, double_angle, free }
+        Self { sorted, axis, circle: [half, xy, radius], free }
     }
 
     /// A strain along the sorted axes as xx, yy, xy, zz.
@@ -365,7 +371,11 @@ impl Principal {
         let mut own = [0.0; 3];
         self.axis.iter().zip(strain).for_each(|(&k, value)| own[k] = value);
         let (mean, half) = (0.5 * (own[0] + own[1]), 0.5 * (own[0] - own[1]));
-        let [cos, sin] = self.double_angle;
+        // Of twice the angle from x to the larger stress in the plane.
+        let [cos, sin] = match self.circle {
+            [half, xy, radius] if radius > 0.0 => [half / radius, xy / radius],
+            _ => [1.0, 0.0],
+        };
         [mean + half * cos, mean - half * cos, half * sin, own[2]]
     }
 }

@@ -21,6 +21,7 @@ pub struct Felt {
 
 impl Model {
     /// Deformation of an element under displacements of the covers (m).
+    #[inline]
     pub fn deformation(&self, element: ElementId, displacement: &[Vector]) -> Deformation {
         let u = self.covers.element_covers[element].map(|i| displacement[i]);
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
@@ -57,16 +58,19 @@ impl Model {
     }
 
     /// Strength of an element; none when it never yields.
+    #[inline]
     pub fn strength_of(&self, element: ElementId) -> Option<&YieldingRock> {
         self.strengths[self.element_rock[element] as usize].as_ref()
     }
 
     /// In-situ stress xx, yy, xy (Pa) of an element, zero when the model has none.
+    #[inline]
     pub fn pre_stress_of(&self, element: ElementId) -> PreStress {
         self.pre_stress.get(element.index()).copied().unwrap_or_default()
     }
 
     /// In-situ stress xx, yy, xy, zz (Pa) of an element, zero when the model has none.
+    #[inline]
     pub fn pre_stress_and_out(&self, element: ElementId) -> [f64; 4] {
         let [xx, yy, xy] = self.pre_stress_of(element);
         [xx, yy, xy, self.pre_stress_out.get(element.index()).copied().unwrap_or_default()]

@@ -170,8 +170,10 @@ fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
     sum(&[inertial, inverse, total, inverse_total, square, polar, polar_lumped, spin, fixed])
 }
 
-fn yielding(YieldBuffers { surfaces: _, deformations, energy, growth, averages }: &YieldBuffers) -> usize {
-    sum(&[deformations, energy, growth, &averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean])
+fn yielding(YieldBuffers { surfaces: _, flows, averages }: &YieldBuffers) -> usize {
+    let grown: usize = flows.iter().map(|flow| sum(&[&flow.grown])).sum();
+    let averages = [&averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean];
+    sum(&[flows]) + grown + averages.map(|list| sum(&[list])).iter().sum::<usize>()
 }
 
 fn inputs(inputs: &Inputs) -> usize {

@@ -23,8 +23,8 @@ pub use model::{
 };
 pub use quantity::Quantity;
 pub use workspace::{
-    ChunkSums, ContactOutcome, Face, FaceBuffers, MotionBuffers, Seconds, SelectionBuffers, SupportBuffers, Suspect,
-    SweepBuffers, Workspace, YieldBuffers,
+    ChunkSums, ContactOutcome, Face, FaceBuffers, Flow, Grown, MotionBuffers, Seconds, SelectionBuffers,
+    SupportBuffers, Suspect, SweepBuffers, Workspace, YieldBuffers,
 };
 
 use serde::{Deserialize, Serialize};

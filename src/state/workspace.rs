@@ -4,7 +4,7 @@ use crate::contact::{
     AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
     PenetratingContacts, SearchGrid, SideId, SupportRow, VertexEdge,
 };
-use crate::cover::BlockId;
+use crate::cover::{BlockId, ElementId};
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
 use crate::mechanics::{
@@ -90,14 +90,30 @@ pub struct MotionBuffers {
 pub struct YieldBuffers {
     /// Yield surface of each rock in this step; none for one that never yields.
     pub surfaces: Vec<Option<YieldSurface>>,
-    /// Deformation of each element that can yield.
-    pub deformations: Vec<Option<Deformation>>,
-    /// Energy (J/m) taken by yielding of each run of elements in this step, and whether any flows.
-    pub energy: Vec<(f64, bool)>,
-    /// Growth of the plastic strain of each element in this step, and the mean stress that it felt before.
-    pub growth: Vec<Option<(PlasticStrain, f64)>>,
+    /// Plastic flow of each run of elements.
+    pub flows: Vec<Flow>,
     /// Averages over patches of elements; empty when no rock yields.
     pub averages: Averages,
+}
+
+/// Plastic flow of a run of elements in a step.
+#[derive(Debug, Clone, Default)]
+pub struct Flow {
+    /// Energy (J/m) that each of them takes by itself.
+    pub energy: f64,
+    /// What grows.
+    pub grown: Vec<Grown>,
+}
+
+/// Growth of the plastic strain of an element in a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Grown {
+    /// The element.
+    pub element: ElementId,
+    /// Growth.
+    pub strain: PlasticStrain,
+    /// Mean stress (Pa) that it felt before.
+    pub mean: f64,
 }
 
 /// Search for near pairs, and selection of contacts among them.

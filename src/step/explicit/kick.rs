@@ -36,8 +36,6 @@ struct Kick<'a> {
     pub kick: f64,
     /// Forces of loads on covers (N/m); empty when nothing pushes.
     pub load_force: &'a [Vector],
-    /// Deformation of each element that can yield.
-    pub deformations: &'a [Option<Deformation>],
     /// Mean stress (Pa) of each patch of elements that average it.
     pub patch_mean: &'a [[f64; 2]],
 }
@@ -64,7 +62,6 @@ pub(super) fn predict(
         kick: step.kick,
         grain: chunk_runs::grain(step.serial),
         load_force,
-        deformations: &yielding.deformations,
         patch_mean: &yielding.averages.patch_mean,
     };
     kick.run(ChunkSlices { velocity: predicted, motion: blocks, start, sums, ..ChunkSlices::default() });
@@ -168,13 +165,13 @@ impl Kick<'_> {
             element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, &mut ahead);
         }
         if !self.state.plastic.is_empty() {
-            self.relieve(chunk, &mut tables[1]);
+            self.relieve(chunk, tables);
         }
     }
 
     /// Adds to the forces of the elements of a chunk what plastic strain takes from them and averages change in them.
     #[inline(never)]
-    fn relieve(&self, chunk: &Chunk, force: &mut Table) {
+    fn relieve(&self, chunk: &Chunk, [displacement, force]: &mut [Table; 2]) {
         let (model, chunks) = (self.model, &self.model.chunks);
         for batch in chunks.batches(chunk) {
             let Some(strength) = &model.strengths[batch.rock as usize] else { continue };
@@ -185,8 +182,8 @@ impl Kick<'_> {
                 if mean.is_none() && *plastic == [0.0; 4] {
                     continue;
                 }
-                let Some(deformation) = &self.deformations[e.index()] else { continue };
-                let relief = strength.forces(deformation, (g, model.covers.element_area[e]), plastic, mean);
+                let deformation = Deformation::new(slots.map(|slot| *displacement.at(slot)), g);
+                let relief = strength.forces(&deformation, (g, model.covers.element_area[e]), plastic, mean);
                 slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
             }
         }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
 use crate::mechanics::{self, Averages, Deformation, MassMatrix, PlasticStrain, Strained, YieldSurface, list};
-use crate::state::{Model, State, YieldBuffers};
+use crate::state::{Flow, Grown, Model, State, YieldBuffers};
 
 use super::{Substep, report};
 
@@ -28,92 +28,68 @@ pub(super) fn yield_rock(
     let factor = state.drive.strength_factor(state.drive.share(step.time));
     buffers.surfaces.clear();
     buffers.surfaces.extend(model.strengths.iter().map(|s| s.map(|strength| strength.surface(factor))));
-    volumes(model, state, step.serial, buffers);
-    average(model, step.serial, buffers);
-    let (energy, flows) = flow(model, state, step.serial, mass_matrix, buffers);
-    state.ledger.yielding += energy;
-    if flows {
-        average(model, step.serial, buffers);
-        state.ledger.yielding += taken_by_others(model, step.serial, buffers);
+    volumes(model, state, step.serial, &mut buffers.averages.volume);
+    average(model, step.serial, &mut buffers.averages);
+    flow(model, state, step.serial, mass_matrix, buffers);
+    state.ledger.yielding += buffers.flows.iter().map(|flow| flow.energy).sum::<f64>();
+    if buffers.flows.iter().any(|flow| !flow.grown.is_empty()) {
+        average(model, step.serial, &mut buffers.averages);
+        state.ledger.yielding += taken_by_others(model, buffers);
     }
 }
 
 /// Energy (J/m) that all growth takes beyond that of each element alone.
-fn taken_by_others(model: &Model, serial: bool, buffers: &mut YieldBuffers) -> f64 {
-    let YieldBuffers { surfaces, energy, growth, averages, .. } = buffers;
-    let of_element = |k: usize| {
-        let (e, (growth, from)) = (ElementId::new(k), growth[k]?);
+fn taken_by_others(model: &Model, YieldBuffers { surfaces, flows, averages }: &YieldBuffers) -> f64 {
+    let of_element = |grown: &Grown| {
+        let e = grown.element;
         let surface = surfaces[model.element_rock[e] as usize].as_ref()?;
         let [_, [to, _]] = averages.felt(&model.averaging, e, averages.volume[e]);
-        Some(surface.taken_by_others(&growth, from, to) * model.covers.element_area[e])
+        Some(surface.taken_by_others(&grown.strain, grown.mean, to) * model.covers.element_area[e])
     };
-    let count = growth.len();
-    let of_run = |run: usize| (run * RUN..count.min((run + 1) * RUN)).filter_map(of_element).sum::<f64>();
-    list(serial, count.div_ceil(RUN), energy, |run| (of_run(run), true));
-    energy.iter().map(|taken| taken.0).sum()
+    flows.iter().map(|flow| flow.grown.iter().filter_map(of_element).sum::<f64>()).sum()
 }
 
 /// Elastic volume changes of all elements that can yield, and what the last step brought of them.
-fn volumes(model: &Model, state: &State, serial: bool, buffers: &mut YieldBuffers) {
-    let YieldBuffers { deformations, averages, .. } = buffers;
+fn volumes(model: &Model, state: &State, serial: bool, volume: &mut Vec<[f64; 2]>) {
     let State { displacement, velocity, dt_last, plastic, .. } = state;
-    list(serial, plastic.len(), deformations, |k| {
+    list(serial, plastic.len(), volume, |k| {
         let e = ElementId::new(k);
-        model.strength_of(e).map(|_| model.deformation(e, displacement))
-    });
-    list(serial, plastic.len(), &mut averages.volume, |k| {
-        let e = ElementId::new(k);
-        let Some((strength, at)) = model.strength_of(e).zip(deformations[k].as_ref()) else { return [0.0; 2] };
+        let Some(strength) = model.strength_of(e) else { return [0.0; 2] };
+        let at = model.deformation(e, displacement);
         let brought = at.dilatation_by(moved(model, e, velocity, *dt_last), gradients(model, e));
-        [strength.own_volume(at, &plastic[e]), brought]
+        [strength.own_volume(&at, &plastic[e]), brought]
     });
 }
 
 /// Averages volume changes and mean stresses over patches (Eqs. 58a, 58b).
-fn average(model: &Model, serial: bool, YieldBuffers { averages, .. }: &mut YieldBuffers) {
+fn average(model: &Model, serial: bool, averages: &mut Averages) {
     averages.average(&model.averaging, serial, |e, [volume, brought]| match model.strength_of(e) {
         Some(strength) => [volume, brought].map(|volume| strength.mean_stress(volume)),
         None => [0.0; 2],
     });
 }
 
-/// Brings the plastic strain of all elements to the current displacements; returns the energy (J/m) that it takes, and
-/// whether any flows.
-fn flow(
-    model: &Model,
-    state: &mut State,
-    serial: bool,
-    mass_matrix: &MassMatrix,
-    buffers: &mut YieldBuffers,
-) -> (f64, bool) {
-    let YieldBuffers { surfaces, deformations, energy: taken, growth, averages } = buffers;
-    taken.clear();
-    taken.resize(state.plastic.len().div_ceil(RUN), (0.0, false));
-    growth.clear();
-    growth.resize(state.plastic.len(), None);
+/// Brings the plastic strain of all elements to the current displacements, and notes what grows.
+fn flow(model: &Model, state: &mut State, serial: bool, mass_matrix: &MassMatrix, buffers: &mut YieldBuffers) {
+    let YieldBuffers { surfaces, flows, averages } = buffers;
     let State { plastic, displacement, velocity, dt_last, removed, .. } = state;
+    flows.resize_with(plastic.len().div_ceil(RUN), Flow::default);
     // Each run changes the volumes of its own elements; those of patches stay as they were.
     let mut volume = std::mem::take(&mut averages.volume);
     let dt_last = *dt_last;
-    let pass = Pass { model, surfaces, deformations, averages, mass_matrix, displacement, velocity, dt_last, removed };
-    let run = |(k, (((taken, plastic), volume), growth)): (usize, Run)| {
-        *taken = pass.run(k * RUN, plastic, volume, growth);
-    };
+    let pass = Pass { model, surfaces, averages, mass_matrix, displacement, velocity, dt_last, removed };
+    let run = |(k, ((flow, plastic), volume)): (usize, Run)| pass.run(k * RUN, plastic, volume, flow);
     if serial {
-        let runs = taken.iter_mut().zip(plastic.chunks_mut(RUN)).zip(volume.chunks_mut(RUN));
-        runs.zip(growth.chunks_mut(RUN)).enumerate().for_each(run);
+        flows.iter_mut().zip(plastic.chunks_mut(RUN)).zip(volume.chunks_mut(RUN)).enumerate().for_each(run);
     } else {
-        let runs = taken.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).zip(volume.par_chunks_mut(RUN));
-        runs.zip(growth.par_chunks_mut(RUN)).enumerate().for_each(run);
+        let runs = flows.par_iter_mut().zip(plastic.par_chunks_mut(RUN)).zip(volume.par_chunks_mut(RUN));
+        runs.enumerate().for_each(run);
     }
     averages.volume = volume;
-    (taken.iter().map(|taken| taken.0).sum(), taken.iter().any(|taken| taken.1))
 }
 
-/// The energy that a run of elements takes and whether it flows, with its plastic strains, volume changes and growth.
-type Run<'a> = (((&'a mut (f64, bool), &'a mut [PlasticStrain]), &'a mut [[f64; 2]]), &'a mut [Growth]);
-/// Growth of the plastic strain of an element, and the mean stress that it felt before.
-type Growth = Option<(PlasticStrain, f64)>;
+/// How a run of elements flows, with its plastic strains and volume changes.
+type Run<'a> = ((&'a mut Flow, &'a mut [PlasticStrain]), &'a mut [[f64; 2]]);
 
 /// How far (m) the covers of an element moved in the last step.
 fn moved(model: &Model, element: ElementId, velocity: &[Vector], dt_last: f64) -> [Vector; 3] {
@@ -128,7 +104,6 @@ fn gradients(model: &Model, element: ElementId) -> &[Vector; 3] {
 struct Pass<'a> {
     model: &'a Model,
     surfaces: &'a [Option<YieldSurface>],
-    deformations: &'a [Option<Deformation>],
     averages: &'a Averages,
     mass_matrix: &'a MassMatrix,
     displacement: &'a [Vector],
@@ -138,37 +113,30 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    /// Updates the elements from `first` on; returns the energy (J/m) that it takes, and whether any flows.
-    fn run(
-        &self,
-        first: usize,
-        plastic: &mut [PlasticStrain],
-        volume: &mut [[f64; 2]],
-        grown: &mut [Growth],
-    ) -> (f64, bool) {
+    /// Updates the elements from `first` on.
+    fn run(&self, first: usize, plastic: &mut [PlasticStrain], volume: &mut [[f64; 2]], flow: &mut Flow) {
         let covers = &self.model.covers;
-        let (mut energy, mut flows, mut turn) = (0.0, false, None);
+        let mut turn = None;
+        flow.energy = 0.0;
+        flow.grown.clear();
         let elements = ElementId::range(first..first + plastic.len());
-        for (element, ((plastic, own), grown)) in elements.zip(plastic.iter_mut().zip(volume).zip(grown)) {
+        for (element, (plastic, own)) in elements.zip(plastic.iter_mut().zip(volume)) {
             let Some(surface) = &self.surfaces[self.model.element_rock[element] as usize] else { continue };
             if self.removed[covers.element_block[element]] {
                 continue;
             }
-            let [_, mean] = self.averages.felt(&self.model.averaging, element, *own);
-            let Some(deformation) = self.deformations[element.index()] else { continue };
-            let at = Strained { deformation, mean: mean[0] };
+            let [_, [mean, brought]] = self.averages.felt(&self.model.averaging, element, *own);
+            let at = Strained { deformation: self.model.deformation(element, self.displacement), mean };
             let pre = self.model.pre_stress_and_out(element);
             if let Some(growth) = surface.growth(&at, &pre, plastic) {
                 let deformation = self.before(element, &at.deformation, &mut turn);
-                let from = Strained { deformation, mean: mean[0] - mean[1] };
-                energy += surface.taken(&from, &at, &pre, [plastic, &growth]) * covers.element_area[element];
+                let from = Strained { deformation, mean: mean - brought };
+                flow.energy += surface.taken(&from, &at, &pre, [plastic, &growth]) * covers.element_area[element];
                 (0..4).for_each(|k| plastic[k] += growth[k]);
                 own[0] -= surface.volume(&growth);
-                *grown = Some((growth, mean[0]));
-                flows = true;
+                flow.grown.push(Grown { element, strain: growth, mean });
             }
         }
-        (energy, flows)
     }
 
     /// Deformation of an element one step ago, in the frame of its block; `turn` is that of the last block asked for.
