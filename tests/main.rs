@@ -61,5 +61,6 @@ mod sliding_converges;
 mod softening;
 mod vertex_rule;
 mod water_in_joints;
+mod water_pressure;
 mod yield_paths;
 mod yield_runs;

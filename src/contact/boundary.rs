@@ -40,6 +40,8 @@ pub struct Boundary {
     pub covers: Vec<[CoverId; 3]>,
     /// Covers of the element that carries edge `k`.
     pub edge_covers: Vec<[CoverId; 3]>,
+    /// Edges that lie on a sliver, in their order: the edge follows the host of that element.
+    pub slivers: Vec<(EdgeId, ElementId)>,
     /// Weights of the covers of point `k` there.
     pub weights: Vec<Weights>,
     /// Reference position of point `k` (m).
@@ -156,6 +158,12 @@ impl Boundary {
         self.next[k]
     }
 
+    /// The sliver on which an edge lies.
+    pub fn sliver(&self, edge: EdgeId) -> Option<ElementId> {
+        let found = self.slivers.binary_search_by_key(&edge, |sliver| sliver.0);
+        found.ok().map(|k| self.slivers[k].1)
+    }
+
     /// Joint trace of a node: that of the edge after it, or else of the edge before it.
     pub fn node_trace(&self, node: NodeId) -> Option<TraceId> {
         self.trace[self.nodes.point[node]].or(self.trace[self.nodes.edge_before[node]])
@@ -234,6 +242,9 @@ impl Boundary {
             let element = carrier(before, after);
             self.covers.push(covers.element_covers[element]);
             self.edge_covers.push(covers.element_covers[covers.host[after]]);
+            if covers.host[after] != after {
+                self.slivers.push((edge, after));
+            }
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);
             self.next.push(EdgeId::new(if first + k == last { first } else { first + k + 1 }));

@@ -182,6 +182,12 @@ impl Deformation {
         Vector::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
     }
 
+    /// A gradient or a normal of the reference times its length, carried along: det(F)·F⁻ᵀ·g.
+    pub fn carry_normal(&self, g: Vector) -> Vector {
+        let [f11, f12, f21, f22] = self.f;
+        Vector::new(f22 * g.x - f21 * g.y, f11 * g.y - f12 * g.x)
+    }
+
     /// Rotation (rad), counter-clockwise.
     pub fn rotation(&self) -> f64 {
         libm::atan2(self.sin, self.cos)

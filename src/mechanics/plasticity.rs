@@ -45,6 +45,8 @@ pub struct YieldingRock {
     pub elasticity: Elasticity,
     /// Whether there is no stress out of the plane, instead of no strain.
     pub plane_stress: bool,
+    /// Whether water has pressure in its pores (Eq. 39a).
+    pub is_porous: bool,
     /// Its strength.
     pub criterion: Criterion,
 }
@@ -488,7 +490,7 @@ mod tests {
         };
         let (friction, dilation) = (tangent(friction_deg), tangent(dilation_deg));
         let criterion = Criterion::MohrCoulomb(MohrCoulomb { friction, cohesion: 1e6, dilation, tension });
-        YieldingRock { elasticity, plane_stress, criterion }
+        YieldingRock { elasticity, plane_stress, is_porous: false, criterion }
     }
 
     /// Stress after the return of a trial stress.
@@ -558,7 +560,7 @@ mod tests {
         let tension = tension.map(|share| share * envelope.tension());
         let criterion = Criterion::HoekBrown(hoek_brown::HoekBrown::new(envelope, dilation, tension));
         let elasticity = Elasticity::plane_strain(1e9, 0.3, 2500.0);
-        (YieldingRock { elasticity, plane_stress: false, criterion }, envelope)
+        (YieldingRock { elasticity, plane_stress: false, is_porous: false, criterion }, envelope)
     }
 
     /// Triaxial compression with the axis in the plane or out of it, and extension: at every confining pressure the

@@ -63,6 +63,12 @@ impl Model {
         self.strengths[self.element_rock[element] as usize].as_ref()
     }
 
+    /// Whether water has pressure in the pores of an element that lies below its surface (Eq. 39a).
+    pub fn is_porous(&self, element: ElementId) -> bool {
+        let has_water = self.water.as_ref().is_some_and(|water| water.in_rock);
+        has_water && self.strength_of(element).is_some_and(|strength| strength.is_porous)
+    }
+
     /// In-situ stress xx, yy, xy (Pa) of an element, zero when the model has none.
     #[inline]
     pub fn pre_stress_of(&self, element: ElementId) -> PreStress {

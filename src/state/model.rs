@@ -5,7 +5,7 @@ use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
     Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, PreStress, Record, StressField,
-    YieldingRock,
+    YieldingRock, pressure,
 };
 
 use super::{OtherIntegrator, SelectionBuffers};
@@ -58,6 +58,8 @@ pub struct Water {
     pub surfaces: Vec<WaterSurface>,
     /// Boundary edges that it reaches.
     pub edges: Vec<EdgeId>,
+    /// Whether rock below its surface has pore pressure.
+    pub in_rock: bool,
 }
 
 /// Surface of water before a host moves its level.
@@ -70,6 +72,12 @@ pub struct WaterSurface {
 }
 
 impl WaterSurface {
+    /// Vertical depth (m) of a position below the surface when its level has moved to `level`; negative above it.
+    pub fn depth(&self, level: f64, at: Point) -> f64 {
+        let [table, rise] = [pressure::surface(&self.table, at.x), level - self.level];
+        if self.table.is_empty() { level - at.y } else { table + rise - at.y }
+    }
+
     /// Points of the surface (m) when its level has moved to `level`; a single one of a level surface.
     pub fn moved_to(&self, level: f64) -> Vec<Point> {
         if self.table.is_empty() {

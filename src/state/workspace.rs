@@ -7,9 +7,7 @@ use crate::contact::{
 use crate::cover::{BlockId, ElementId};
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{BlockSums, RigidVelocity, WorkSums};
-use crate::mechanics::{
-    Averages, BlockMotion, BlockStart, Damping, Deformation, MassMatrix, PlasticStrain, Turn, YieldSurface,
-};
+use crate::mechanics::{Averages, BlockMotion, BlockStart, Damping, MassMatrix, PlasticStrain, Turn, YieldSurface};
 
 use super::{Buffers, Crushing, Model, State};
 

@@ -1,10 +1,10 @@
 //! Actions on the rock from outside: gravity, loads of the case, and inputs of a host.
 
 use crate::contact::EdgeId;
-use crate::cover::{BlockId, CoverId};
+use crate::cover::{self, BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, LoadAction, pressure};
-use crate::state::{Drive, Model, Port, State};
+use crate::state::{Drive, Model, Port, State, Water};
 
 use super::{Substep, quiet};
 
@@ -51,7 +51,12 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
     }
     let faces = Faces { model, state };
     let share = state.drive.share(t);
-    faces.push_water(share, ramp, force);
+    if let Some(water) = &model.water {
+        let level = state.drive.water_level(share);
+        let weight = water.density * state.drive.gravity(share).norm() * ramp;
+        faces.push_water(water, level, weight, force);
+        push_pores(model, state, |at| weight * water.surfaces[state.stage as usize].depth(level, at), force);
+    }
     for (k, port) in model.ports.iter().enumerate() {
         let (traction, pressure) = state.drive.port(k, share);
         faces.push_port(port, traction * ramp, pressure * ramp, force);
@@ -73,6 +78,24 @@ fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut 
     }
 }
 
+/// The pressure (Pa, where positive) in the pores of rock pushes the covers of its elements apart; the skeleton carries
+/// the rest (Eq. 39a).
+fn push_pores(model: &Model, state: &State, pressure: impl Fn(Point) -> f64, force: &mut [Vector]) {
+    let covers = &model.covers;
+    for e in covers.elements().filter(|&e| !state.removed[covers.element_block[e]] && model.is_porous(e)) {
+        let centroid = covers.element_centroid[e];
+        let moved = cover::sample(&covers.element_covers[e], &covers.weights(e, centroid), &state.displacement);
+        let push = pressure(centroid + moved) * covers.element_area[e];
+        if push > 0.0 {
+            let at = model.deformation(e, &state.displacement);
+            let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
+            for (&cover, &gradient) in covers.element_covers[e].iter().zip(gradients) {
+                force[cover] += at.carry_normal(gradient) * push;
+            }
+        }
+    }
+}
+
 /// Boundary edges at their current positions.
 struct Faces<'a> {
     model: &'a Model,
@@ -80,18 +103,18 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    fn push_water(&self, share: f64, ramp: f64, force: &mut [Vector]) {
-        let Some(water) = &self.model.water else { return };
-        let level = self.state.drive.water_level(share);
-        let weight = water.density * self.state.drive.gravity(share).norm() * ramp;
+    fn push_water(&self, water: &Water, level: f64, weight: f64, force: &mut [Vector]) {
         let surface = &water.surfaces[self.state.stage as usize];
         let rise = level - surface.level;
         for &edge in &water.edges {
-            if surface.table.is_empty() {
-                self.push(edge, |a, b| pressure::hydrostatic(a, b, level, weight), force);
+            let [a, b] = self.ends(edge);
+            let forces = if surface.table.is_empty() {
+                pressure::hydrostatic(a, b, level, weight)
             } else {
-                self.push(edge, |a, b| pressure::under_table(a, b, &surface.table, rise, weight), force);
-            }
+                pressure::under_table(a, b, &surface.table, rise, weight)
+            };
+            let sliver = self.model.boundary.sliver(edge).filter(|&sliver| self.model.is_porous(sliver));
+            self.spread(edge, sliver, forces, force);
         }
     }
 
@@ -104,29 +127,34 @@ impl Faces<'_> {
             let length = (reference[self.model.boundary.after(edge)] - reference[edge]).norm();
             let dead = traction * (0.5 * length);
             if pressure == 0.0 {
-                self.spread(edge, [dead; 2], force);
+                self.spread(edge, None, [dead; 2], force);
             } else {
-                self.push(edge, |a, b| pressure::uniform(a, b, pressure).map(|f| f + dead), force);
+                let [a, b] = self.ends(edge);
+                self.spread(edge, None, pressure::uniform(a, b, pressure).map(|f| f + dead), force);
             }
         }
     }
 
-    /// Forces at both ends of an edge, given their current positions.
-    fn push(&self, edge: EdgeId, forces: impl Fn(Point, Point) -> [Vector; 2], force: &mut [Vector]) {
+    /// Current positions of both ends of an edge (m).
+    fn ends(&self, edge: EdgeId) -> [Point; 2] {
         let boundary = &self.model.boundary;
         let stars = &self.model.covers.star_position;
-        let position = |k: EdgeId| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement);
-        self.spread(edge, forces(position(edge), position(boundary.after(edge))), force);
+        [edge, boundary.after(edge)].map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement))
     }
 
-    /// Spreads forces at both ends of an edge over their covers.
-    fn spread(&self, edge: EdgeId, forces: [Vector; 2], force: &mut [Vector]) {
-        let boundary = &self.model.boundary;
+    /// Spreads forces at both ends of an edge over their covers, or over those of its sliver, whose pores have a
+    /// pressure that balances them.
+    fn spread(&self, edge: EdgeId, sliver: Option<ElementId>, forces: [Vector; 2], force: &mut [Vector]) {
+        let Model { boundary, covers, .. } = self.model;
         if self.state.removed[boundary.block[edge]] {
             return;
         }
         for (k, f) in [edge, boundary.after(edge)].into_iter().zip(forces) {
-            mechanics::spread(&boundary.covers[k], &boundary.weights[k], f, force);
+            let (covers, weights) = match sliver {
+                Some(sliver) => (covers.element_covers[sliver], covers.weights(sliver, boundary.reference[k])),
+                None => (boundary.covers[k], boundary.weights[k]),
+            };
+            mechanics::spread(&covers, &weights, f, force);
         }
     }
 }

@@ -357,20 +357,6 @@ impl Case {
         least.is_finite().then_some(least)
     }
 
-    /// A warning where water stands in rock whose strength grows with pressure: that rock has no pore pressure.
-    pub fn pore_pressure_left_out(&self) -> Option<String> {
-        let starts = self.water.as_ref().map(Water::surface)?;
-        let later = self.stages.iter().filter_map(|stage| stage.water.as_ref());
-        let top = later.map(WaterSurface::highest).fold(starts.highest(), f64::max);
-        let [bottom, _] = self.heights();
-        let (name, _) = self.rocks.iter().find(|(_, rock)| top > bottom && rock.has_friction())?;
-        Some(format!(
-            "rock.{name}: yields with friction, but `[water]` up to y = {top} m presses on faces and joints alone: \
-             this rock has no pore pressure, and where water stands in it, it is too strong; give its undrained \
-             strength (`cohesion`, with `friction_deg = 0`)"
-        ))
-    }
-
     /// The lowest and the highest y of the outline (m).
     fn heights(&self) -> [f64; 2] {
         let heights = || self.domain.outline.iter().map(|point| point[1]);
@@ -389,9 +375,11 @@ impl Rock {
         self.friction_deg.is_some() || self.cohesion.is_some() || self.hoek_brown.is_some()
     }
 
-    /// Whether the strength of the rock grows with the pressure on it.
-    pub fn has_friction(&self) -> bool {
-        self.friction_deg.is_some_and(|angle| angle > 0.0) || self.hoek_brown.is_some()
+    /// Whether water has pressure in its pores: where its strength is that of effective stresses. A plate under plane
+    /// stress drains to its sides, and strength without friction is that of total stresses.
+    pub fn is_porous(&self) -> bool {
+        let has_friction = self.friction_deg.is_some_and(|angle| angle > 0.0) || self.hoek_brown.is_some();
+        has_friction && self.plane == Plane::Strain
     }
 
     /// Whether the rock swells when it yields.
@@ -672,6 +660,9 @@ pub struct Water {
     /// Whether joints below the level are full: pressure on both of their faces.
     #[serde(default = "yes")]
     pub joints: bool,
+    /// Whether rock below the level that yields with friction has pore pressure, so that its effective stress decides.
+    #[serde(default = "yes")]
+    pub rock: bool,
     /// Segments (m) of the outer boundary that the water reaches; default: all that no `[[fix]]` edge holds.
     #[serde(default)]
     pub faces: Option<Vec<[[f64; 2]; 2]>>,
@@ -701,7 +692,7 @@ impl WaterSurface {
 impl Water {
     /// Water without a surface yet, all else as a case has it that names nothing.
     pub fn still() -> Self {
-        Self { level: None, table: None, density: water_density(), joints: true, faces: None }
+        Self { level: None, table: None, density: water_density(), joints: true, rock: true, faces: None }
     }
 
     /// The surface at the start.

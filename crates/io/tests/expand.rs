@@ -313,25 +313,3 @@ fn a_case_that_is_not_expanded_is_refused() {
     let invalid = Simulation::new(case).map(|_| ()).unwrap_err();
     assert!(invalid.to_string().starts_with("stage: is not expanded; load the case through `enmm_io`"), "{invalid}");
 }
-
-/// Rock that yields with friction is too strong below water: it has no pore pressure, whichever stage brings the water.
-#[test]
-fn water_in_rock_that_yields_with_friction_causes_a_warning() {
-    let warnings = |strength: &str, level: f64, later: &str| {
-        let strong = text(&format!("[water]\nlevel = {level}\n"), &format!("{STAGE}{later}"));
-        loaded(&strong.replace("poisson = 0.25\n", &format!("poisson = 0.25\n{strength}\n"))).warnings
-    };
-    for strength in ["friction_deg = 30", "hoek_brown = { sigma_ci = 30e6, mi = 10, gsi = 40 }"] {
-        let found = warnings(strength, 4.0, "");
-        assert!(
-            found.len() == 1 && found[0].contains("rock.rock: yields") && found[0].contains("y = 4 m"),
-            "{found:?}"
-        );
-        assert_eq!(warnings(strength, -1.0, ""), [""; 0]);
-        let rain = STAGE.replace("gravity", "rain") + "water = { level = 2.0 }\n";
-        assert_eq!(warnings(strength, -1.0, &rain).len(), 1);
-    }
-    for strength in ["", "cohesion = 1e5", "cohesion = 1e5\nfriction_deg = 0"] {
-        assert_eq!(warnings(strength, 4.0, ""), [""; 0], "{strength}");
-    }
-}

@@ -122,7 +122,7 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
         *wet |= water.joints && faces.boundary.trace[edge].is_some();
     }
     let edges = faces.boundary.edges().filter(|&k| wet[k]).collect();
-    Ok(Some(Water { density: water.density, surfaces: surfaces(case, water), edges }))
+    Ok(Some(Water { density: water.density, surfaces: surfaces(case, water), edges, in_rock: water.rock }))
 }
 
 /// The surface of the water at the start of each stage: what none brings is as before.

@@ -20,7 +20,8 @@ pub(super) fn elasticity(rock: &Rock) -> Elasticity {
 /// Elastic constants and strength of a rock of the case; none when it never yields.
 pub(super) fn yielding(rock: &Rock) -> Option<YieldingRock> {
     let plane_stress = rock.plane == Plane::Stress;
-    rock.yields().then(|| YieldingRock { elasticity: elasticity(rock), plane_stress, criterion: criterion(rock) })
+    let (elasticity, criterion, is_porous) = (elasticity(rock), criterion(rock), rock.is_porous());
+    rock.yields().then_some(YieldingRock { elasticity, plane_stress, is_porous, criterion })
 }
 
 fn criterion(rock: &Rock) -> Criterion {

@@ -55,7 +55,6 @@ impl LoadedCase {
         source.origins = told.origins;
         let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
         case.validate().map_err(located)?;
-        warnings.extend(case.pore_pressure_left_out());
         let hash = case.fingerprint().map_err(located)?;
         let settings = source.settings.values().cloned().collect();
         Ok(Self { case, typed, source, hash, orientations, warnings, settings })

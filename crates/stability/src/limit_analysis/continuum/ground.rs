@@ -39,6 +39,8 @@ pub struct Patch {
     pub corners: [Point; 3],
     /// Strengths that all hold, by the kind of rock in [`Rock::kinds`].
     pub kind: usize,
+    /// Pressure in the pores at the corners.
+    pub pores: [f64; 3],
     /// Weight and inertia over the area.
     pub body: Vector,
     /// Whether it is held altogether.
@@ -139,7 +141,8 @@ fn yields(program: &mut Conic, rock: &Rock, strength: f64) {
         for corner in 0..3 {
             let s = stress(t, corner);
             let lines = rock.kinds[patch.kind].iter();
-            yields_at(program, s, lines.flat_map(|&line| limits(s, line, strength)).collect());
+            let pore = patch.pores[corner];
+            yields_at(program, s, lines.flat_map(|&line| limits((s, pore), line, strength)).collect());
         }
     }
 }
@@ -151,22 +154,23 @@ struct Limit {
     change: f64,
 }
 
-/// Limits of the stress whose first unknown is `s`: by friction and cohesion, and by the tensile strength.
-fn limits(s: usize, rock: Strength, x: f64) -> impl Iterator<Item = Limit> {
+/// Limits of the stress whose first unknown is `s`, with a pressure in the pores: by friction and cohesion, and by the
+/// tensile strength.
+fn limits((s, pore): (usize, f64), rock: Strength, x: f64) -> impl Iterator<Item = Limit> {
     let sum = |terms: Vec<(usize, f64)>, constant: f64| Sum { terms, constant };
-    let friction = rock.friction * x;
+    let (friction, cohesion) = (rock.friction * x, rock.cohesion - pore * rock.friction);
     let secant = (1.0 + friction * friction).sqrt();
     let shear = Limit {
         room: Strong {
-            now: sum(vec![(MISSING, 2.0), (s, -friction), (s + 1, -friction)], 2.0 * rock.cohesion * x),
-            change: sum(vec![(s, -rock.friction), (s + 1, -rock.friction)], 2.0 * rock.cohesion),
+            now: sum(vec![(MISSING, 2.0), (s, -friction), (s + 1, -friction)], 2.0 * cohesion * x),
+            change: sum(vec![(s, -rock.friction), (s + 1, -rock.friction)], 2.0 * cohesion),
         },
         factor: secant,
         change: rock.friction * friction / secant,
     };
     let cut_off = rock.tension.filter(|tension| tension * rock.friction * x < rock.cohesion).map(|tension| Limit {
         room: Strong {
-            now: sum(vec![(MISSING, 2.0), (s, -1.0), (s + 1, -1.0)], 2.0 * tension * x),
+            now: sum(vec![(MISSING, 2.0), (s, -1.0), (s + 1, -1.0)], 2.0 * (tension * x - pore)),
             change: Sum::constant(2.0 * tension),
         },
         factor: 1.0,

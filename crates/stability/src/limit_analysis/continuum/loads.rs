@@ -25,6 +25,8 @@ enum Push {
 struct Water {
     /// Unit weight (N/m³).
     weight: f64,
+    /// Whether it stands in the pores of rock, too.
+    in_rock: bool,
     /// Surface (m) from left to right, level beyond its ends.
     surface: Vec<Point>,
     /// Edges of the boundary that it reaches, by the trace that made them.
@@ -140,6 +142,12 @@ impl Loads {
         })
     }
 
+    /// Pressure (Pa) in the pores at a position.
+    pub fn pore_pressure(&self, at: Point) -> f64 {
+        let water = self.water.as_ref().filter(|water| water.in_rock);
+        water.map_or(0.0, |water| water.weight * water.depth(at).max(0.0))
+    }
+
     /// Greatest pressure or traction (Pa).
     pub fn greatest(&self) -> f64 {
         let of = |push: &Push| match push {
@@ -176,5 +184,5 @@ fn water(simulation: &Simulation) -> Option<Water> {
         let ends = [boundary.reference[edge], boundary.reference[boundary.next[edge]]];
         reached.entry(boundary.trace[edge]).or_default().push(ends);
     }
-    Some(Water { weight: water.density * state.drive.gravity(share).norm(), surface, reached })
+    Some(Water { weight: water.density * state.drive.gravity(share).norm(), in_rock: water.in_rock, surface, reached })
 }

@@ -15,7 +15,7 @@ mod upper;
 
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::assemble::outlines;
-use enmm::model::case::{Case, Invalid};
+use enmm::model::case::{self, Case, Invalid};
 use enmm::model::tables::BlockId;
 use enmm::model::{BoltSegment, Simulation};
 
@@ -98,6 +98,8 @@ struct Ground {
     is_held: Vec<bool>,
     /// Strengths of each rock for the lower and for the upper bound; none for one that never yields.
     kinds: [Vec<Vec<Strength>>; 2],
+    /// Whether water has pressure in the pores of each rock.
+    is_porous: Vec<bool>,
     /// Length (m) and stress (Pa) that count as one.
     units: [f64; 2],
     area: f64,
@@ -194,7 +196,8 @@ impl Ground {
         let is_held = refusal::held_blocks(&simulation);
         let of_rocks = |proof| case.rocks.values().map(|rock| strengths(rock, proof, stress, stress)).collect();
         let kinds = [Proof::Equilibrium, Proof::Mechanism].map(of_rocks);
-        Ok(Self { kinds, units: [length, stress], drawing, loads, is_held, area, simulation })
+        let is_porous = case.rocks.values().map(case::Rock::is_porous).collect();
+        Ok(Self { kinds, is_porous, units: [length, stress], drawing, loads, is_held, area, simulation })
     }
 
     /// The upper bound on meshes that are finer from one to the next, and finest where the last has sheared.
@@ -319,9 +322,11 @@ impl Ground {
             let block = mesh.triangles[t].block;
             let kind = self.kind(block, mesh.centroid(t));
             let model = self.simulation.model();
+            let pore = |p: Point| if self.is_porous[kind] { self.loads.pore_pressure(p) / stress } else { 0.0 };
             Patch {
                 corners: mesh.corners(t).map(|p| p / length),
                 kind,
+                pores: mesh.corners(t).map(pore),
                 body: self.loads.acceleration * (model.rocks[kind].density * length / stress),
                 is_held: self.is_held[block.number() as usize],
                 edges: [0, 1, 2].map(|k| self.edge(mesh, t, k)),
