@@ -68,7 +68,7 @@ fn water_on_a_wall_that_rises_above_it_acts_a_third_of_the_depth_from_the_bottom
 }
 
 /// A slope in soil of the density of water, below a level or the same surface as a table: what water presses on its
-/// faces with, its pores take up, to a hundredth of the largest pressure, also beside slivers and fixities.
+/// faces with, its pores take up: in the mean to a thousandth of the largest pressure, beside slivers to 3 %.
 #[test]
 fn soil_as_heavy_as_water_rests_below_it_without_effective_stress() {
     for (water, cohesion) in [("level = 12", 1e6), ("table = [[-5, 12], [40, 12]]", 1e6), ("level = 12", 1e4)] {

@@ -172,8 +172,7 @@ fn mass_matrix(mass_matrix: &MassMatrix) -> usize {
 
 fn yielding(YieldBuffers { surfaces: _, flows, averages }: &YieldBuffers) -> usize {
     let grown: usize = flows.iter().map(|flow| sum(&[&flow.grown])).sum();
-    let averages = [&averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean];
-    sum(&[flows]) + grown + averages.map(|list| sum(&[list])).iter().sum::<usize>()
+    sum(&[flows, &averages.volume, &averages.mean, &averages.patch_volume, &averages.patch_mean]) + grown
 }
 
 fn inputs(inputs: &Inputs) -> usize {

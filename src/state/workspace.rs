@@ -99,7 +99,7 @@ pub struct YieldBuffers {
 pub struct Flow {
     /// Energy (J/m) that each of them takes by itself.
     pub energy: f64,
-    /// What grows.
+    /// Growth of those that flow.
     pub grown: Vec<Grown>,
 }
 

@@ -55,7 +55,9 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
         let level = state.drive.water_level(share);
         let weight = water.density * state.drive.gravity(share).norm() * ramp;
         faces.push_water(water, level, weight, force);
-        push_pores(model, state, |at| weight * water.surfaces[state.stage as usize].depth(level, at), force);
+        if model.strengths.iter().flatten().any(|strength| strength.is_porous) {
+            push_pores(model, state, |at| weight * water.surfaces[state.stage as usize].depth(level, at), force);
+        }
     }
     for (k, port) in model.ports.iter().enumerate() {
         let (traction, pressure) = state.drive.port(k, share);
