@@ -12,12 +12,13 @@ const README_LINES_MAX: usize = 200;
 /// Most comments of the whole repository that begin with the word `What`.
 const RIDDLES_MAX: usize = 60;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
-const ENGINE_LINES_MAX: usize = 26_200;
+const ENGINE_LINES_MAX: usize = 25_400;
 /// Folders of programs that may print.
 const PRINTERS: [&str; 4] = ["crates/cli/", "tools/", "tests/", "examples/"];
 /// Floors of the house: a crate depends on crates of lower floors alone, tests excepted.
-const FLOORS: [&[&str]; 9] = [
+const FLOORS: [&[&str]; 10] = [
     &["enmm-case", "enmm-handles", "enmm-lanes", "enmm-parts"],
+    &["enmm-rock"],
     &["enmm"],
     &["enmm-implicit", "enmm-io", "enmm-observe", "enmm-stability", "enmm-ensemble"],
     &["enmm-paper", "enmm-picture", "enmm-report", "enmm-capi"],
@@ -28,10 +29,11 @@ const FLOORS: [&[&str]; 9] = [
     &["enmm-fuzz", "enmm-header", "enmm-peers", "xtask"],
 ];
 /// Rooms whose results must not depend on the order of a hash.
-const ORDERED: [&str; 3] = ["src/mechanics/", "src/contact/", "src/step/"];
+const ORDERED: [&str; 4] = ["src/mechanics/", "src/contact/", "src/step/", "crates/rock/src/"];
 /// Folders whose results have the same bits on every platform.
-const SAME_BITS: [&str; 7] = [
+const SAME_BITS: [&str; 8] = [
     "src/",
+    "crates/rock/src/",
     "crates/case/src/",
     "crates/stability/src/",
     "crates/run/src/",

@@ -2,24 +2,16 @@
 //! (Eqs. 58a–58c). A *patch* is the elements of one rock about one cover: averages stay on one side of joints, faces
 //! and boundaries between rocks.
 
+use enmm_lanes::LANES;
 use rayon::prelude::*;
 
 use crate::cover::{CoverId, Covers, ElementId};
 
-use super::Deformation;
+use super::ElementRow;
 
 /// Share of a whole star below which a cover is light: its neighbours' stress would push it out of the face. From 0.15
 /// to 0.3 the factor of a slope in soil changes by 0.4 %.
 const LIGHT_STAR: f64 = 0.2;
-
-/// Deformation of an element with what its rock feels of the patches about it, or its own where it is in none.
-#[derive(Debug, Clone, Copy)]
-pub struct Strained {
-    /// Deformation.
-    pub deformation: Deformation,
-    /// Mean stress in the plane (Pa), without in-situ stress (Eq. 58b).
-    pub mean: f64,
-}
 
 /// An element of a patch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +32,8 @@ pub struct Averaging {
     patch_start: Vec<u32>,
     /// The patches of each element; none where it keeps its own volume change.
     patches: Vec<Option<[PatchId; 3]>>,
+    /// Elements eight by eight; none where they are not of one rock that yields.
+    rows: Vec<Option<ElementRow>>,
 }
 
 crate::geometry::id! {
@@ -63,12 +57,9 @@ pub struct Averages {
 /// Elements and patches that a thread takes together.
 const RUN: usize = 1024;
 
-/// Makes a list of what `value` gives for each of `count` indices.
-pub fn list<T: Send + Default>(serial: bool, count: usize, list: &mut Vec<T>, value: impl Fn(usize) -> T + Sync) {
-    list.resize_with(count, T::default);
-    let fill = |(run, values): (usize, &mut [T])| {
-        values.iter_mut().enumerate().for_each(|(k, place)| *place = value(run * RUN + k));
-    };
+/// Fills a list run by run; `fill` gets the index of the first value of each.
+pub fn fill_runs<T: Send>(serial: bool, list: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {
+    let fill = |(run, values): (usize, &mut [T])| fill(run * RUN, values);
     if serial {
         list.chunks_mut(RUN).enumerate().for_each(fill);
     } else {
@@ -76,26 +67,25 @@ pub fn list<T: Send + Default>(serial: bool, count: usize, list: &mut Vec<T>, va
     }
 }
 
+/// Makes a list of what `value` gives for each of `count` indices.
+fn list<T: Send + Default>(serial: bool, count: usize, list: &mut Vec<T>, value: impl Fn(usize) -> T + Sync) {
+    list.resize_with(count, T::default);
+    fill_runs(serial, list, |first, values| {
+        values.iter_mut().enumerate().for_each(|(k, place)| *place = value(first + k));
+    });
+}
+
 impl Averages {
-    /// Averages volume changes, and the mean stresses that `mean_stress` finds under them.
-    pub fn average(
-        &mut self,
-        averaging: &Averaging,
-        serial: bool,
-        mean_stress: impl Fn(ElementId, [f64; 2]) -> [f64; 2] + Sync,
-    ) {
-        let Self { volume, mean, patch_volume, patch_mean } = self;
+    /// Averages volume changes over patches.
+    pub fn average_volume(&mut self, averaging: &Averaging, serial: bool) {
+        let Self { volume, patch_volume, .. } = self;
         list(serial, averaging.len(), patch_volume, |k| averaging.of_patch(k, |e| volume[e]));
-        let averaged = |e| averaging.of_element(e, patch_volume).unwrap_or(volume[e]);
-        list(serial, volume.len(), mean, |k| mean_stress(ElementId::new(k), averaged(ElementId::new(k))));
-        list(serial, averaging.len(), patch_mean, |k| averaging.of_patch(k, |e| mean[e]));
     }
 
-    /// Volume change and mean stress that the rock of an element feels, whose own volume change is given.
-    #[inline]
-    pub fn felt(&self, averaging: &Averaging, element: ElementId, volume: [f64; 2]) -> [[f64; 2]; 2] {
-        let [felt, mean] = [&self.patch_volume, &self.patch_mean].map(|means| averaging.of_element(element, means));
-        [felt.unwrap_or(volume), mean.unwrap_or_else(|| self.mean[element])]
+    /// Averages mean stresses over patches.
+    pub fn average_mean(&mut self, averaging: &Averaging, serial: bool) {
+        let Self { mean, patch_mean, .. } = self;
+        list(serial, averaging.len(), patch_mean, |k| averaging.of_patch(k, |e| mean[e]));
     }
 }
 
@@ -116,6 +106,13 @@ impl Averaging {
             averaging.push(covers, patch);
         }
         averaging.patch_start.push(averaging.members.len() as u32);
+        let row = |first: usize| {
+            let elements = first..first + LANES;
+            let rock = element_rock.get(elements.clone())?;
+            let is_one = rock.iter().all(|other| *other == rock[0]) && yields(ElementId::new(first));
+            is_one.then(|| ElementRow::new(covers, &averaging, elements))
+        };
+        averaging.rows = (0..covers.element_count()).step_by(LANES).map(row).collect();
         averaging
     }
 
@@ -134,14 +131,28 @@ impl Averaging {
         self.patch_start.len().saturating_sub(1)
     }
 
-    /// Whether there is none.
+    /// Whether no rock yields.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.patches.is_empty()
     }
 
     /// Memory (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.members) + size_of_val(&*self.patch_start) + size_of_val(&*self.patches)
+        size_of_val(&*self.members)
+            + size_of_val(&*self.patch_start)
+            + size_of_val(&*self.patches)
+            + size_of_val(&*self.rows)
+    }
+
+    /// The patches of an element; none where it keeps its own volume change.
+    pub fn patches_of(&self, element: ElementId) -> Option<[PatchId; 3]> {
+        self.patches[element]
+    }
+
+    /// The elements of the eight in a row from `first` on, if they are of one rock that yields.
+    #[inline(always)]
+    pub fn row(&self, first: usize) -> Option<&ElementRow> {
+        self.rows[first / LANES].as_ref()
     }
 
     /// Mean over a patch of values that its elements have.
@@ -155,14 +166,8 @@ impl Averaging {
         mean
     }
 
-    /// Mean of what the three patches of an element have; none where it keeps its own value.
-    #[inline]
-    pub fn of_element<const N: usize>(&self, element: ElementId, means: &[[f64; N]]) -> Option<[f64; N]> {
-        let patches = self.patches[element]?.map(|patch| means[patch]);
-        Some(of_three(patches))
-    }
-
-    /// The same from the values of the elements about it: the same bits.
+    /// Mean of what the three patches of an element have, from the values of the elements about it; none where it keeps
+    /// its own value.
     pub fn around<const N: usize>(
         &self,
         element: ElementId,

@@ -15,7 +15,7 @@ use enmm_lanes::{LANES, SLOTS, Slot};
 use crate::cover::{BlockId, CoverId, Covers, ElementId};
 use crate::geometry::Vector;
 
-use super::PreStress;
+use super::{Averaging, PatchPlaces, PlasticPlaces, PreStress};
 
 /// Number of covers from which a chunk of whole blocks is full.
 const PATCH: usize = 512;
@@ -87,6 +87,23 @@ pub struct Row {
 /// In-situ stress xx, yy, xy (Pa) of eight elements.
 pub type PreStresses = [[f64; LANES]; 3];
 
+/// Some groups of eight elements of one kind.
+#[derive(Debug, Clone, Copy)]
+pub struct SomeEights<'a, E> {
+    /// The groups.
+    pub list: &'a [E],
+    /// In-situ stress of each; empty when the model has none.
+    pub pre_stress: &'a [PreStresses],
+    /// Where lanes find what belongs to rock that yields; empty when no rock yields.
+    pub yielding: &'a [YieldPlaces],
+}
+
+/// Elements of eight lanes; none in an empty one.
+type LaneElements = [Option<ElementId>; LANES];
+
+/// Where eight elements find their patches and plastic strain; an empty lane has those of any.
+pub type YieldPlaces = (PatchPlaces, PlasticPlaces);
+
 /// Groups of eight elements of one kind, with the data that only some groups or models need.
 #[derive(Debug, Clone, PartialEq)]
 struct Eights<E> {
@@ -94,22 +111,31 @@ struct Eights<E> {
     /// In-situ stress of each; empty when there is none.
     pre_stress: Vec<PreStresses>,
     /// Elements of the lanes; none in an empty one.
-    elements: Vec<[Option<ElementId>; LANES]>,
+    elements: Vec<LaneElements>,
+    /// Places of each; empty when no rock yields.
+    yielding: Vec<YieldPlaces>,
 }
 
 impl<E> Default for Eights<E> {
     fn default() -> Self {
-        Self { list: Vec::new(), pre_stress: Vec::new(), elements: Vec::new() }
+        Self { list: Vec::new(), pre_stress: Vec::new(), elements: Vec::new(), yielding: Vec::new() }
     }
 }
 
 impl<E> Eights<E> {
     fn bytes(&self) -> usize {
-        size_of_val(&*self.list) + size_of_val(&*self.pre_stress) + size_of_val(&*self.elements)
+        size_of_val(&*self.list)
+            + size_of_val(&*self.pre_stress)
+            + size_of_val(&*self.elements)
+            + size_of_val(&*self.yielding)
     }
 
-    fn get(&self, range: &Range<usize>) -> (&[E], &[PreStresses]) {
-        (&self.list[range.clone()], self.pre_stress.get(range.clone()).unwrap_or_default())
+    fn get(&self, range: &Range<usize>) -> SomeEights<'_, E> {
+        SomeEights {
+            list: &self.list[range.clone()],
+            pre_stress: self.pre_stress.get(range.clone()).unwrap_or_default(),
+            yielding: self.yielding.get(range.clone()).unwrap_or_default(),
+        }
     }
 
     /// Elements with their slots.
@@ -137,11 +163,12 @@ pub struct Chunks {
 
 impl Chunks {
     /// Cuts the blocks of a model into chunks.
-    pub fn new(covers: &Covers, element_rock: &[u16], pre_stress: &[PreStress]) -> Self {
+    pub fn new(covers: &Covers, element_rock: &[u16], pre_stress: &[PreStress], averaging: &Averaging) -> Self {
         let mut cutter = Cutter {
             covers,
             element_rock,
             pre_stress,
+            averaging,
             slot_of: vec![0; covers.cover_count()],
             chunks: Self::default(),
         };
@@ -206,13 +233,13 @@ impl Chunks {
         self.batches(chunk).iter().map(|batch| batch.rows.len() + batch.groups.len()).sum()
     }
 
-    /// Rows of a batch with their in-situ stress, which is empty when the model has none.
-    pub fn rows(&self, batch: &Batch) -> (&[Row], &[PreStresses]) {
+    /// Rows of a batch.
+    pub fn rows(&self, batch: &Batch) -> SomeEights<'_, Row> {
         self.rows.get(&batch.rows)
     }
 
-    /// Groups of a batch with their in-situ stress, which is empty when the model has none.
-    pub fn groups(&self, batch: &Batch) -> (&[Group], &[PreStresses]) {
+    /// Groups of a batch.
+    pub fn groups(&self, batch: &Batch) -> SomeEights<'_, Group> {
         self.groups.get(&batch.groups)
     }
 
@@ -251,6 +278,7 @@ struct Cutter<'a> {
     covers: &'a Covers,
     element_rock: &'a [u16],
     pre_stress: &'a [PreStress],
+    averaging: &'a Averaging,
     slot_of: Vec<u32>,
     chunks: Chunks,
 }
@@ -392,42 +420,53 @@ impl Cutter<'_> {
     }
 
     /// Adds a row whose first element has these slots.
-    fn push_row(&mut self, first: [u32; 3], ids: [Option<ElementId>; LANES]) {
+    fn push_row(&mut self, first: [u32; 3], ids: LaneElements) {
         let [left, _, tip] = first.map(|slot| Slot::new(slot as usize));
-        let (area, pre) = self.lanes(&ids);
-        push_eight(&mut self.chunks.rows, Row { first: [left, tip], area }, pre, ids);
+        let (area, others) = self.lanes(&ids);
+        push_eight(&mut self.chunks.rows, Row { first: [left, tip], area }, others, ids);
     }
 
-    fn push_group(&mut self, ids: [Option<ElementId>; LANES]) {
+    fn push_group(&mut self, ids: LaneElements) {
         let mut slots = <[[Slot; LANES]; 3]>::default();
         for (lane, e) in lanes_of(&ids) {
             (0..3).for_each(|k| slots[k][lane] = Slot::new(self.slots(e)[k] as usize));
         }
-        let (area, pre) = self.lanes(&ids);
-        push_eight(&mut self.chunks.groups, Group { slots, area }, pre, ids);
+        let (area, others) = self.lanes(&ids);
+        push_eight(&mut self.chunks.groups, Group { slots, area }, others, ids);
     }
 
-    /// Areas (m²) of eight elements, and their in-situ stress when the model has any.
-    fn lanes(&self, ids: &[Option<ElementId>; LANES]) -> ([f64; LANES], Option<PreStresses>) {
-        let (mut area, mut pre) = ([0.0; LANES], [[0.0; LANES]; 3]);
+    /// Areas (m²) of eight elements, and what only some models have: in-situ stress, and places in rock that yields.
+    fn lanes(&self, ids: &LaneElements) -> ([f64; LANES], (Option<PreStresses>, Option<YieldPlaces>)) {
+        let (mut area, mut pre, mut places) = ([0.0; LANES], [[0.0; LANES]; 3], YieldPlaces::default());
+        let yields = !self.averaging.is_empty();
         for (lane, e) in lanes_of(ids) {
             area[lane] = self.covers.element_area[e];
+            if yields {
+                places.0.set(lane, e, self.averaging);
+                places.1.set(lane, e);
+            }
             if let Some(stress) = self.pre_stress.get(e.index()) {
                 (0..3).for_each(|k| pre[k][lane] = stress[k]);
             }
         }
-        (area, (!self.pre_stress.is_empty()).then_some(pre))
+        (area, ((!self.pre_stress.is_empty()).then_some(pre), yields.then_some(places)))
     }
 }
 
 /// Lanes that have an element, with it.
-fn lanes_of(ids: &[Option<ElementId>; LANES]) -> impl Iterator<Item = (usize, ElementId)> {
+fn lanes_of(ids: &LaneElements) -> impl Iterator<Item = (usize, ElementId)> {
     ids.iter().enumerate().filter_map(|(lane, id)| Some((lane, (*id)?)))
 }
 
-fn push_eight<E>(eights: &mut Eights<E>, eight: E, pre: Option<PreStresses>, ids: [Option<ElementId>; LANES]) {
+fn push_eight<E>(
+    eights: &mut Eights<E>,
+    eight: E,
+    (pre, places): (Option<PreStresses>, Option<YieldPlaces>),
+    ids: LaneElements,
+) {
     eights.list.push(eight);
     eights.pre_stress.extend(pre);
+    eights.yielding.extend(places);
     eights.elements.push(ids);
 }
 

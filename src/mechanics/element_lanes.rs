@@ -4,8 +4,8 @@ use enmm_lanes::{LANES, Lanes, Table};
 
 use crate::geometry::Vector;
 
-use super::Elasticity;
-use super::chunk::{Group, PreStresses, Row};
+use super::chunk::{Group, PreStresses, Row, SomeEights, YieldPlaces};
+use super::{Deformation, Elasticity};
 
 /// Eight elements: how their displacements are read and their forces are added.
 pub trait Elements: Sized {
@@ -73,6 +73,23 @@ impl Elements for Row {
     }
 }
 
+/// What rock takes off the elastic stress of eight elements.
+pub trait Relief: Copy {
+    /// First Piola–Kirchhoff stress (Pa), row by row; none where the rock is elastic.
+    fn taken_off<L: Lanes>(&self, lanes: L, of: Option<&YieldPlaces>, at: &Deformation<L::F>) -> Option<[L::F; 4]>;
+}
+
+/// Rock that never yields.
+#[derive(Clone, Copy)]
+pub struct Elastic;
+
+impl Relief for Elastic {
+    #[inline(always)]
+    fn taken_off<L: Lanes>(&self, _: L, _: Option<&YieldPlaces>, _: &Deformation<L::F>) -> Option<[L::F; 4]> {
+        None
+    }
+}
+
 /// Constants that the elements of a batch share.
 #[derive(Clone, Copy)]
 struct Constants<F> {
@@ -85,13 +102,16 @@ struct Constants<F> {
     g: [[F; 2]; 2],
 }
 
+/// Trace of the stretch in a missing element that takes displacements of covers without any: its stresses are finite.
+const LEAST: f64 = 1e-100;
+
 impl<F: Copy> Constants<F> {
     #[inline(always)]
     fn new<L: Lanes<F = F>>(lanes: L, rock: &Elasticity, [g, h]: [Vector; 2]) -> Self {
         Self {
             one: lanes.splat(1.0),
             two: lanes.splat(2.0),
-            least: lanes.splat(f64::MIN_POSITIVE),
+            least: lanes.splat(LEAST),
             two_mu: lanes.splat(2.0 * rock.mu),
             lambda: lanes.splat(rock.lambda),
             g: [[lanes.splat(g.x), lanes.splat(g.y)], [lanes.splat(h.x), lanes.splat(h.y)]],
@@ -108,13 +128,13 @@ const BEHIND: [usize; 2] = [4, 3];
 const KEPT: [usize; 2] = [8, 4];
 const _: () = assert!(BEHIND[0] < KEPT[0] && BEHIND[1] < KEPT[1]);
 
-/// Adds the forces (N/m) of elements of one rock and these gradients of the second and the third weight (1/m);
-/// `pre_stress` is that of each group, or empty. `meanwhile` is called after every few groups.
+/// Adds the forces (N/m) of elements of one rock and these gradients of the second and the third weight (1/m).
+/// `meanwhile` is called after every few groups.
 #[inline(always)]
-pub fn push_forces<L: Lanes, E: Elements>(
+pub fn push_forces<L: Lanes, E: Elements, R: Relief>(
     lanes: L,
-    (elements, pre_stress): (&[E], &[PreStresses]),
-    (rock, g): (&Elasticity, [Vector; 2]),
+    SomeEights { list: elements, pre_stress, yielding }: SomeEights<E>,
+    (rock, g, relief): (&Elasticity, [Vector; 2], R),
     [displacement, force]: &mut [Table; 2],
     mut meanwhile: impl FnMut(),
 ) {
@@ -132,7 +152,8 @@ pub fn push_forces<L: Lanes, E: Elements>(
         let k = k.wrapping_sub(BEHIND[0]);
         if let Some(eight) = elements.get(k) {
             let values = deformed[k % KEPT[0]];
-            stressed[k % KEPT[1]] = corner_forces(lanes, &constants, eight.area(), values, pre_stress.get(k));
+            let eight = (eight.area(), pre_stress.get(k), yielding.get(k));
+            stressed[k % KEPT[1]] = corner_forces(lanes, &constants, eight, values, relief);
         }
         let k = k.wrapping_sub(BEHIND[1]);
         let Some(eight) = elements.get(k) else { continue };
@@ -164,14 +185,14 @@ fn deformation<L: Lanes, E: Elements>(
 
 /// Forces x, y on the second and x, y on the third cover; the first cover gets the force that balances them.
 #[inline(always)]
-fn corner_forces<L: Lanes>(
+fn corner_forces<L: Lanes, R: Relief>(
     lanes: L,
     constants: &Constants<L::F>,
-    area: &[f64; LANES],
-    [f11, f12, f21, f22]: [L::F; 4],
-    pre: Option<&PreStresses>,
+    (area, pre, places): (&[f64; LANES], Option<&PreStresses>, Option<&YieldPlaces>),
+    f: [L::F; 4],
+    relief: R,
 ) -> [L::F; 4] {
-    let [g, h] = constants.g;
+    let ([g, h], [f11, f12, f21, f22]) = (constants.g, f);
     let (c, s) = (f11 + f22, f21 - f12);
     // A missing element takes displacements of any covers: its forces must be zero, never 0 times infinity.
     let trace = lanes.max(constants.least, lanes.sqrt(c * c + s * s));
@@ -190,6 +211,9 @@ fn corner_forces<L: Lanes>(
         p[1] = p[1] + (f11 * xy + f12 * yy);
         p[2] = p[2] + (f21 * xx + f22 * xy);
         p[3] = p[3] + (f21 * xy + f22 * yy);
+    }
+    if let Some(off) = relief.taken_off(lanes, places, &Deformation::split(f, [c, s], trace)) {
+        p = [p[0] - area * off[0], p[1] - area * off[1], p[2] - area * off[2], p[3] - area * off[3]];
     }
     [p[0] * g[0] + p[1] * g[1], p[2] * g[0] + p[3] * g[1], p[0] * h[0] + p[1] * h[1], p[2] * h[0] + p[3] * h[1]]
 }

@@ -5,30 +5,29 @@ mod averaging;
 pub mod block_lanes;
 pub mod chunk;
 mod column;
-mod elasticity;
 pub mod element_lanes;
-mod hoek_brown;
-mod internal;
 mod load;
 mod mass;
 mod motion;
-mod plasticity;
 pub mod pressure;
 mod record;
 mod turn;
+mod yield_lanes;
 
-pub use averaging::{Averages, Averaging, Strained, list};
+pub use enmm_rock::{
+    Criterion, Deformation, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, PreStress, Strained, StressField,
+    YieldSurface, YieldingRock, critical_dt, equivalent_strain,
+};
+
+pub use averaging::{Averages, Averaging, fill_runs};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
-pub use elasticity::{Elasticity, critical_dt};
-pub use hoek_brown::HoekBrown;
-pub use internal::{Deformation, PreStress, StressField};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::MassMatrix;
 pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
     turning,
 };
-pub use plasticity::{Criterion, MohrCoulomb, PlasticStrain, YieldSurface, YieldingRock, equivalent_strain};
 pub use record::Record;
 pub use turn::Turn;
+pub use yield_lanes::{ElementRow, PatchPlaces, PlasticPlaces};

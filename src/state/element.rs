@@ -4,11 +4,14 @@ use std::ops::Range;
 
 use crate::cover::ElementId;
 use crate::geometry::Vector;
-use crate::mechanics::{Deformation, Elasticity, PlasticStrain, PreStress, Strained, YieldingRock, equivalent_strain};
+use crate::mechanics::{
+    Deformation, Elasticity, PlasticStrain, PreStress, Strained, YieldSurface, YieldingRock, equivalent_strain,
+};
 
 use super::{Model, State};
 
-/// What rock that yields feels of the patches about it, of whole blocks. Empty where no rock yields.
+/// What rock that yields feels of the patches about it, of whole blocks, and its yield surfaces. Empty where no rock
+/// yields.
 #[derive(Debug, Clone)]
 pub struct Felt {
     /// First element.
@@ -17,6 +20,8 @@ pub struct Felt {
     volume: Vec<[f64; 1]>,
     /// Averaged mean stress (Pa) of each, without in-situ stress (Eq. 58b).
     mean: Vec<[f64; 1]>,
+    /// Yield surface of each rock; none for one that never yields.
+    surfaces: Vec<Option<YieldSurface>>,
 }
 
 impl Model {
@@ -31,7 +36,7 @@ impl Model {
     pub fn felt(&self, state: &State, elements: Range<usize>) -> Felt {
         let first = elements.start;
         if state.plastic.is_empty() {
-            return Felt { first, volume: Vec::new(), mean: Vec::new() };
+            return Felt { first, volume: Vec::new(), mean: Vec::new(), surfaces: Vec::new() };
         }
         let at = |e: ElementId| e.index() - first;
         let own = |e: ElementId| match self.strength_of(e) {
@@ -44,7 +49,9 @@ impl Model {
         let stress = |e| [self.strength_of(e).map_or(0.0, |rock| rock.mean_stress(volume[at(e)][0]))];
         let own: Vec<_> = ElementId::range(elements.clone()).map(stress).collect();
         let mean = ElementId::range(elements).map(|e| averaged(&own, e)).collect();
-        Felt { first, volume, mean }
+        let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
+        let surfaces = self.surfaces(state.drive.strength_factor_now(time)).collect();
+        Felt { first, volume, mean, surfaces }
     }
 
     /// The same for the block of one element.
@@ -61,6 +68,11 @@ impl Model {
     #[inline]
     pub fn strength_of(&self, element: ElementId) -> Option<&YieldingRock> {
         self.strengths[self.element_rock[element] as usize].as_ref()
+    }
+
+    /// Yield surface of each rock with its strength times a factor; none for one that never yields.
+    pub fn surfaces(&self, factor: f64) -> impl Iterator<Item = Option<YieldSurface>> {
+        self.strengths.iter().map(move |rock| rock.map(|strength| strength.surface(factor)))
     }
 
     /// Whether water has pressure in the pores of an element that lies below its surface (Eq. 39a).
@@ -92,8 +104,7 @@ impl Model {
     ) -> Option<(&YieldingRock, Strained, [PlasticStrain; 2])> {
         let strength = self.strength_of(element)?;
         let before = state.plastic.get(element.index())?;
-        let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
-        let surface = strength.surface(state.drive.strength_factor_now(time));
+        let surface = felt.surfaces[self.element_rock[element] as usize].as_ref()?;
         let deformation = self.deformation(element, &state.displacement);
         let at = Strained { deformation, mean: felt.mean[element.index() - felt.first][0] };
         let growth = surface.growth(&at, &self.pre_stress_and_out(element), before).unwrap_or_default();

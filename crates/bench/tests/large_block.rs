@@ -30,7 +30,7 @@ fn every_part_has_the_elements_of_its_covers_once() {
                 found.push(e);
             }
             in_rows +=
-                chunks.rows(batch).0.iter().map(|row| row.area.iter().filter(|a| **a > 0.0).count()).sum::<usize>();
+                chunks.rows(batch).list.iter().map(|row| row.area.iter().filter(|a| **a > 0.0).count()).sum::<usize>();
         }
         found.sort_unstable();
         found.dedup();

@@ -52,7 +52,12 @@ impl Neg for Registers {
     }
 }
 
-impl Arithmetic for Registers {}
+impl Arithmetic for Registers {
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Avx2(()).splat(value)
+    }
+}
 
 /// x and y of the pairs 0–1 and 2–3.
 #[inline(always)]

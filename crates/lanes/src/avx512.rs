@@ -52,7 +52,12 @@ impl Neg for Register {
     }
 }
 
-impl Arithmetic for Register {}
+impl Arithmetic for Register {
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Avx512(()).splat(value)
+    }
+}
 
 /// x and y of the pairs 0–3 and 4–7.
 #[inline(always)]

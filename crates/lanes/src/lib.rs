@@ -33,9 +33,22 @@ pub const LANES: usize = 8;
 pub trait Arithmetic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// One value in all lanes.
+    fn splat(self, value: f64) -> Self;
 }
 
-impl Arithmetic for f64 {}
+impl Arithmetic for f64 {
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        value
+    }
+}
+
+/// Pairs that stand as plain numbers.
+pub fn as_pairs(values: &[[f64; 2]]) -> &[Pair] {
+    // SAFETY: a pair is two f64 in a row (`repr(C)` and `repr(transparent)` all the way).
+    unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), values.len()) }
+}
 
 /// Arithmetic on values of eight lanes at once, or on that of the first lane only.
 pub trait Values: Copy {

@@ -24,6 +24,18 @@ impl Places {
         places
     }
 
+    /// The index `first` and those that follow in equal steps.
+    pub const fn in_steps(first: u32, step: u32) -> Self {
+        let mut values = [0; LANES];
+        let (mut lane, mut greatest) = (0, first);
+        while lane < LANES {
+            greatest = first + step * lane as u32;
+            values[lane] = 2 * greatest;
+            lane += 1;
+        }
+        Self { values, greatest }
+    }
+
     /// Gives a lane another index.
     ///
     /// # Panics

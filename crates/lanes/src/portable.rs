@@ -59,7 +59,12 @@ impl Neg for Array {
     }
 }
 
-impl Arithmetic for Array {}
+impl Arithmetic for Array {
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Self([value; LANES])
+    }
+}
 
 impl Values for Portable {
     type F = Array;

@@ -1,6 +1,8 @@
 //! Every kind of lanes gives the bits of the portable one, operation by operation.
 
-use enmm_lanes::{First, Kernel, LANES, Lanes, Pair, Path, Places, SLOTS, Slot, Table, Values, dispatch_on};
+use enmm_lanes::{
+    Arithmetic, First, Kernel, LANES, Lanes, Pair, Path, Places, SLOTS, Slot, Table, Values, as_pairs, dispatch_on,
+};
 
 /// Numbers of all sizes and both signs, and a zero.
 fn numbers(seed: u64) -> [f64; LANES] {
@@ -90,7 +92,10 @@ fn common<V: Values>(lanes: V, seed: u64) -> (Vec<[f64; LANES]>, Vec<Pair>) {
     lanes.scatter_to([x, a], &mut list, &Places::new(&[6, 2, 6, 3, 2, 1, 0, 5]));
     let one = lanes.splat(1.0);
     let of_two = [a + b, a - b, a * b, a / (b * b + one), lanes.max(a, b), lanes.min(a, b)];
-    let values = of_two.into_iter().chain([-a, lanes.keep_above(a, b, x), x, y]).map(|value| {
+    let numbers = [[1.5, -2.0], [f64::MIN_POSITIVE, 1e300]].repeat(LANES);
+    let [z, w] = lanes.gather_from(as_pairs(&numbers), &Places::in_steps(1, 2));
+    let alone = [-a, lanes.keep_above(a, b, x), x, y, z, w, a.splat(-0.3)];
+    let values = of_two.into_iter().chain(alone).map(|value| {
         let mut out = [0.0; LANES];
         lanes.store(value, &mut out);
         out

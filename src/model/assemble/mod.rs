@@ -133,7 +133,7 @@ fn model(
 ) -> Result<(Model, Vec<String>), Invalid> {
     let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let positions = Locator { covers: &covers, outlines, tolerance };
-    let element_rock = rock::assign(case, &positions)?;
+    let (element_rock, averaging) = rock::of_elements(case, &positions)?;
     let ground = quiet::Ground { case, positions: &positions, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
@@ -142,8 +142,8 @@ fn model(
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
     let model = Model {
-        averaging: rock::averaging(case, &covers, &element_rock),
-        chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers)),
+        chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers), &averaging),
+        averaging,
         integrator: None,
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),

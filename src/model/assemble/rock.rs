@@ -43,10 +43,12 @@ fn criterion(rock: &Rock) -> Criterion {
     }
 }
 
-/// Patches of the elements that can yield.
-pub(super) fn averaging(case: &Case, covers: &Covers, element_rock: &[u16]) -> Averaging {
+/// Rock of each element, and the patches of those that can yield.
+pub(super) fn of_elements(case: &Case, positions: &Locator) -> Result<(Vec<u16>, Averaging), Invalid> {
+    let rock = assign(case, positions)?;
     let yields: Vec<bool> = case.rocks.values().map(Rock::yields).collect();
-    Averaging::new(covers, element_rock, |e| yields[element_rock[e] as usize])
+    let averaging = Averaging::new(positions.covers, &rock, |e| yields[rock[e] as usize]);
+    Ok((rock, averaging))
 }
 
 /// No plastic strain in any element; empty when no rock yields.
@@ -138,7 +140,7 @@ pub(super) fn coarse(case: &Case) -> Option<String> {
 }
 
 /// Rock of each element: by block, else by region, else the rock that names neither.
-pub(super) fn assign(case: &Case, positions: &Locator) -> Result<Vec<u16>, Invalid> {
+fn assign(case: &Case, positions: &Locator) -> Result<Vec<u16>, Invalid> {
     let background = case.rocks.values().position(|r| r.region.is_none() && r.blocks.is_empty());
     let mut owner: Vec<Option<usize>> = vec![None; positions.covers.element_count()];
     for (k, (name, rock)) in case.rocks.iter().enumerate() {

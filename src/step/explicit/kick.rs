@@ -8,7 +8,11 @@ use enmm_lanes::{LANES, Lanes, Table, prefetch};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{CoverKick, Reference, RigidVelocity, Span};
-use crate::mechanics::{BlockMotion, BlockStart, Chunk, Damping, Deformation, KickStep, MassMatrix, element_lanes};
+use crate::mechanics::chunk::{Batch, YieldPlaces};
+use crate::mechanics::element_lanes::{self, Elastic, Relief};
+use crate::mechanics::{
+    BlockMotion, BlockStart, Chunk, Damping, Deformation, KickStep, MassMatrix, Strained, YieldingRock,
+};
 use crate::state::{ChunkSums, Model, MotionBuffers, State, YieldBuffers};
 
 use super::blocks::{inertial, inverse, scatter};
@@ -159,34 +163,48 @@ impl Kick<'_> {
         }
         let mut ahead = self.ahead(chunk, next);
         for batch in chunks.batches(chunk) {
-            let rock = &model.rocks[batch.rock as usize];
-            let [in_row, in_group] = chunks.gradients(batch, &model.covers.gradients[batch.set as usize]);
-            element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row), tables, &mut ahead);
-            element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group), tables, &mut ahead);
-        }
-        if !self.state.plastic.is_empty() {
-            self.relieve(chunk, tables);
+            match &model.strengths[batch.rock as usize] {
+                Some(strength) => {
+                    let relief = Yielded { strength, kick: self };
+                    self.push_batch(lanes, batch, relief, tables, &mut ahead);
+                }
+                None => self.push_batch(lanes, batch, Elastic, tables, &mut ahead),
+            }
         }
     }
 
-    /// Adds to the forces of the elements of a chunk what plastic strain takes from them and averages change in them.
-    #[inline(never)]
-    fn relieve(&self, chunk: &Chunk, [displacement, force]: &mut [Table; 2]) {
-        let (model, chunks) = (self.model, &self.model.chunks);
-        for batch in chunks.batches(chunk) {
-            let Some(strength) = &model.strengths[batch.rock as usize] else { continue };
-            let g = &model.covers.gradients[batch.set as usize];
-            for (e, slots) in chunks.elements(batch) {
-                let plastic = &self.state.plastic[e];
-                let mean = model.averaging.of_element(e, self.patch_mean).map(|[mean, _]| mean);
-                if mean.is_none() && *plastic == [0.0; 4] {
-                    continue;
-                }
-                let deformation = Deformation::new(slots.map(|slot| *displacement.at(slot)), g);
-                let relief = strength.forces(&deformation, (g, model.covers.element_area[e]), plastic, mean);
-                slots.into_iter().zip(relief).for_each(|(slot, f)| *force.at_mut(slot) += f);
-            }
-        }
+    #[inline(always)]
+    fn push_batch<L: Lanes, R: Relief>(
+        &self,
+        lanes: L,
+        batch: &Batch,
+        relief: R,
+        tables: &mut [Table; 2],
+        ahead: &mut impl FnMut(),
+    ) {
+        let (chunks, rock) = (&self.model.chunks, &self.model.rocks[batch.rock as usize]);
+        let [in_row, in_group] = chunks.gradients(batch, &self.model.covers.gradients[batch.set as usize]);
+        element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row, relief), tables, &mut *ahead);
+        element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group, relief), tables, ahead);
+    }
+}
+
+/// Rock with plastic strain and averages of its patches.
+#[derive(Clone, Copy)]
+struct Yielded<'a> {
+    strength: &'a YieldingRock,
+    kick: &'a Kick<'a>,
+}
+
+impl Relief for Yielded<'_> {
+    #[inline(always)]
+    fn taken_off<L: Lanes>(&self, lanes: L, of: Option<&YieldPlaces>, at: &Deformation<L::F>) -> Option<[L::F; 4]> {
+        let ((patches, plastic), Kick { state, patch_mean, .. }) = (of?, self.kick);
+        let plastic = plastic.of(lanes, &state.plastic);
+        let [mean, _] = patches.means(lanes, patch_mean);
+        let more = self.strength.more(&Strained { deformation: *at, mean }, &plastic);
+        let more = lanes.select(patches.outside, lanes.splat(0.0), more);
+        Some(self.strength.taken_off(at, &plastic, more))
     }
 }
 

@@ -7,6 +7,7 @@ mod commit;
 mod damp;
 mod finish;
 mod kick;
+mod lane_work;
 mod touch;
 mod turn;
 mod works;

@@ -2,7 +2,7 @@
 
 use enmm_case::{Envelope, Tangent};
 
-use super::Elasticity;
+use crate::Elasticity;
 
 /// Points of the table of an envelope: neighbouring circles differ by a sixth in their size, so that chords between
 /// them hold all but a few thousandths of the strength.
@@ -10,8 +10,8 @@ const POINTS: usize = 65;
 /// Sizes of the first and the last circle in the table, relative to the uniaxial compressive strength and to the
 /// strength under a pressure of σci.
 const ENDS: [f64; 2] = [0.02, 2.0];
-/// Most circles that a search looks at by regula falsi, of which it needs ten, and in all: halving ends earlier.
-const FALSI: usize = 50;
+/// Most circles that a search looks at by interpolation, of which it needs three, and in all: halving ends earlier.
+const INTERPOLATED: usize = 20;
 const TRIED_MAX: usize = 1200;
 /// Rest of an equation, relative to the largest trial stress, at which it counts as solved: rounding, so that a stress
 /// that is a small part of the trial stress is on the surface too.
@@ -65,6 +65,18 @@ pub struct Onto<'a> {
     pub trial: [f64; 3],
     /// Stress (Pa) beyond the curve that still counts as on it.
     pub tolerance: f64,
+    /// Whether the largest stress exceeds the tensile strength.
+    pub is_pulled: bool,
+}
+
+/// What a return finds.
+pub enum Returned {
+    /// The trial stress lies inside the curve.
+    Inside,
+    /// Plastic strain along the sorted axes that brings it to the curve.
+    Flows([f64; 3]),
+    /// It returns to the tensile strength.
+    ToTension,
 }
 
 /// Where a return to the face leaves the middle stress.
@@ -139,27 +151,27 @@ impl Curve {
         Circle::touching(v, &self.envelope.tangent(v), self.factor)
     }
 
-    /// How far (Pa) principal stresses lie beyond the curve, measured as |s₁ − s₃|; of stresses that are far inside, or
-    /// on the side of the tensile strength, a bound of it.
+    /// How far (Pa) principal stresses lie beyond the curve, measured as |s₁ − s₃|; of stresses on the side of the
+    /// tensile strength, a bound of it.
     pub fn beyond(&self, [largest, smallest]: [f64; 2]) -> f64 {
-        let (centre, radius) = (-0.5 * (largest + smallest), 0.5 * (largest - smallest));
+        let enough = SOLVED * largest.abs().max(smallest.abs());
+        let at = self.root(enough, |at| -0.5 * (largest + smallest) - at.centre);
+        largest - smallest - 2.0 * at.unwrap_or(self.first).radius
+    }
+
+    /// The most that it can be: beyond the chords of the table.
+    pub fn beyond_at_most(&self, [largest, smallest]: [f64; 2]) -> f64 {
+        let centre = -0.5 * (largest + smallest);
         let after = self.table.partition_point(|at| at.centre <= centre);
-        let Some(below) = after.checked_sub(1).map(|k| &self.table[k]) else {
-            return 2.0 * radius - 2.0 * self.first.radius;
+        let radius = match (after.checked_sub(1).map(|k| &self.table[k]), self.table.get(after)) {
+            (None, _) => self.first.radius,
+            (Some(below), None) => below.radius,
+            (Some(below), Some(above)) => {
+                let share = (centre - below.centre) / (above.centre - below.centre);
+                below.radius + (above.radius - below.radius) * share
+            }
         };
-        let inner = self.table.get(after).map_or(below.radius, |above| {
-            below.radius + (above.radius - below.radius) * (centre - below.centre) / (above.centre - below.centre)
-        });
-        let outer = below.radius + below.sin_friction * (centre - below.centre);
-        if radius <= inner {
-            return 2.0 * (radius - inner);
-        }
-        if radius > outer {
-            return 2.0 * (radius - outer);
-        }
-        let largest = largest.abs().max(smallest.abs());
-        let at = self.root(SOLVED * largest, |at| centre - at.centre);
-        2.0 * (radius - at.unwrap_or(self.first).radius)
+        largest - smallest - 2.0 * radius
     }
 
     /// The circle at which a quantity that falls from circle to circle is zero; none when it is not positive at the
@@ -175,22 +187,20 @@ impl Curve {
             Some(high) => [low, *high],
             None => self.above(low, &value)?,
         };
-        let (mut values, mut last) = (ends.map(|at| value(&at)), ends.len());
+        let mut known = Known::default();
+        let beside = self.table.iter().skip(after.saturating_sub(2).max(first)).take_while(|at| at.v < ends[0].v);
+        beside.chain(self.table.get(after + 1)).chain(&ends).for_each(|at| known.add(at.v, value(at)));
         for tried in 0..TRIED_MAX {
-            // Regula falsi that lowers the value of an end that stays (N. Anderson and Å. Björck 1973); where it is
-            // slow, halving.
-            let share = if tried < FALSI { values[0] / (values[0] - values[1]) } else { 0.5 };
-            let at = self.circle(ends[0].v + share * (ends[1].v - ends[0].v));
+            let half = 0.5 * (ends[0].v + ends[1].v);
+            let crossing = if tried < INTERPOLATED { known.crossing() } else { half };
+            let v = if ends[0].v < crossing && crossing < ends[1].v { crossing } else { half };
+            let at = self.circle(v);
             let now = value(&at);
-            if now.abs() <= enough || at.v <= ends[0].v || at.v >= ends[1].v {
+            if now.abs() <= enough || v <= ends[0].v || v >= ends[1].v {
                 return Some(at);
             }
-            let side = usize::from(now <= 0.0);
-            if side == last {
-                let share = 1.0 - now / values[side];
-                values[1 - side] *= if share > 0.0 { share } else { 0.5 };
-            }
-            (ends[side], values[side], last) = (at, now, side);
+            ends[usize::from(now <= 0.0)] = at;
+            known.add(v, now);
         }
         Some(ends[0])
     }
@@ -212,29 +222,56 @@ impl Curve {
     }
 }
 
-impl Onto<'_> {
-    /// Plastic strain along the sorted axes that brings the trial stress to the curve: to its face, or to an edge where
-    /// the middle stress equals another. None where the trial stress returns to the tensile strength.
-    pub fn flow(&self) -> Option<[f64; 3]> {
-        match self.face() {
-            Some((strain, Order::Kept)) => Some(strain),
-            Some((_, Order::MiddleBelow)) => self.edge(false),
-            Some((_, Order::MiddleAbove)) => self.edge(true),
-            None => self.edge(false).or_else(|| self.edge(true)),
-        }
+/// The last four circles that a search has looked at: v and value of each.
+#[derive(Default)]
+struct Known {
+    circles: [(f64, f64); 4],
+    count: usize,
+}
+
+impl Known {
+    fn add(&mut self, v: f64, value: f64) {
+        self.circles[self.count % self.circles.len()] = (v, value);
+        self.count += 1;
     }
 
-    /// Return to the face, where the middle stress's axis does not flow, and where that leaves the middle stress.
-    fn face(&self) -> Option<([f64; 3], Order)> {
+    /// v where the value is zero, by the polynomial v(value) through the circles.
+    fn crossing(&self) -> f64 {
+        let known = &self.circles[..self.count.min(self.circles.len())];
+        let weight = |k: usize| {
+            let others = known.iter().enumerate().filter(|other| other.0 != k);
+            others.map(|(_, (_, value))| value / (value - known[k].1)).product::<f64>()
+        };
+        known.iter().enumerate().map(|(k, (v, _))| v * weight(k)).sum()
+    }
+}
+
+impl Onto<'_> {
+    /// The return to the face of the curve, or to an edge where the middle stress equals another.
+    pub fn flow(&self) -> Returned {
+        let (ends, least) = ([self.trial[0], self.trial[2]], 0.25 * self.tolerance / self.rock.mu);
+        let edge = match self.face() {
+            Some((_, rate, _)) if rate <= least && !self.is_pulled => return Returned::Inside,
+            Some((strain, rate, order)) if rate >= -least => match order {
+                Order::Kept => return Returned::Flows(strain),
+                Order::MiddleBelow => self.edge(false),
+                Order::MiddleAbove => self.edge(true),
+            },
+            None if !self.is_pulled && self.curve.beyond(ends) <= self.tolerance => return Returned::Inside,
+            _ => self.edge(false).or_else(|| self.edge(true)),
+        };
+        edge.map_or(Returned::ToTension, Returned::Flows)
+    }
+
+    /// Return to the face, where the middle stress's axis does not flow, how much flows, and where that leaves the
+    /// middle stress; none on the side of the tensile strength.
+    fn face(&self) -> Option<([f64; 3], f64, Order)> {
         let [s1, s2, s3] = self.trial;
         let Elasticity { lambda, mu, .. } = *self.rock;
         let rate = |at: &Circle| (s1 - s3 - 2.0 * at.radius) / (4.0 * mu);
         let swells = |at: &Circle| 4.0 * (lambda + mu) * rate(at) * self.curve.sin_dilation(at);
         let at = self.root(|at| swells(at) - 2.0 * at.centre - (s1 + s3))?;
         let (rate, sine) = (rate(&at), self.curve.sin_dilation(&at));
-        if rate < -self.tolerance / mu {
-            return None;
-        }
         let middle = s2 - 2.0 * lambda * sine * rate;
         let [largest, smallest] = at.ends();
         let order = match () {
@@ -242,7 +279,7 @@ impl Onto<'_> {
             () if middle > largest + self.tolerance => Order::MiddleAbove,
             () => Order::Kept,
         };
-        Some(([(1.0 + sine) * rate, 0.0, (sine - 1.0) * rate], order))
+        Some(([(1.0 + sine) * rate, 0.0, (sine - 1.0) * rate], rate, order))
     }
 
     /// Return to the edge where the middle stress equals the largest one (`upper`) or the smallest one.

@@ -1,13 +1,23 @@
 //! Rock that yields: elastic, perfectly plastic by Mohr–Coulomb or Hoek–Brown with tension cut-off, by return mapping
 //! in principal stresses (Eqs. 54–59).
 
-use crate::geometry::Vector;
+use enmm_lanes::{Arithmetic, Values};
 
-use super::hoek_brown::{Curve, HoekBrown, Onto};
-use super::{Deformation, Elasticity, Strained};
+use crate::hoek_brown::{Curve, HoekBrown, Onto, Returned};
+use crate::{Deformation, Elasticity};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
 pub type PlasticStrain = [f64; 4];
+
+/// Deformation of an element, or of eight in lanes, with what its rock feels of the patches about it, or its own where
+/// it is in none.
+#[derive(Debug, Clone, Copy)]
+pub struct Strained<F = f64> {
+    /// Deformation.
+    pub deformation: Deformation<F>,
+    /// Mean stress in the plane (Pa), without in-situ stress (Eq. 58b).
+    pub mean: F,
+}
 
 /// Stress beyond the surface, relative to the largest stress and the cohesion, that still counts as on it: far above
 /// rounding, so that a second return changes nothing, and far below any measurable stress.
@@ -117,47 +127,39 @@ impl YieldingRock {
     }
 
     /// Elastic volume change of an element by which its mean stress in the plane goes (Eq. 58a).
-    #[inline]
-    pub fn own_volume(&self, at: &Deformation, plastic: &PlasticStrain) -> f64 {
+    #[inline(always)]
+    pub fn own_volume<F: Arithmetic>(&self, at: &Deformation<F>, plastic: &[F; 4]) -> F {
         at.dilatation() - volume(&self.elasticity, self.plane_stress, plastic)
     }
 
     /// How much (Pa) the mean stress of its patches differs from an element's own.
-    #[inline]
-    fn more(&self, at: &Deformation, plastic: &PlasticStrain, mean: f64) -> f64 {
-        mean - self.mean_stress(self.own_volume(at, plastic))
+    #[inline(always)]
+    pub fn more<F: Arithmetic>(&self, at: &Strained<F>, plastic: &[F; 4]) -> F {
+        at.mean - at.mean.splat(self.mean_stress(1.0)) * self.own_volume(&at.deformation, plastic)
     }
 
     /// C·εp xx, yy, xy, zz (Pa): the stress that plastic strain takes off (Eq. 55).
-    #[inline]
-    fn relief(&self, plastic: &PlasticStrain) -> [f64; 4] {
+    #[inline(always)]
+    fn relief<F: Arithmetic>(&self, plastic: &[F; 4]) -> [F; 4] {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
 
-    /// Contribution of plastic strain and of averages to the forces (N/m) on the three covers of an element of cut area
-    /// `area` (m²); `mean` is the averaged mean stress (Pa), if there is one (Eq. 58c).
+    /// What plastic strain takes off the first Piola–Kirchhoff stress (Pa) and `more` of the mean stress adds to it,
+    /// row by row (Eqs. 58, 58c).
     ///
-    /// The skew part makes them the gradient of the energy where C·εp and the stretch have different axes, so that they
-    /// rotate no element (Eq. 58).
-    #[inline]
-    pub fn forces(
-        &self,
-        at: &Deformation,
-        (g, area): (&[Vector; 3], f64),
-        plastic: &PlasticStrain,
-        mean: Option<f64>,
-    ) -> [Vector; 3] {
+    /// The skew part makes the forces the gradient of the energy where C·εp and the stretch have different axes, so
+    /// that they rotate no element (Eq. 58).
+    #[inline(always)]
+    pub fn taken_off<F: Arithmetic>(&self, at: &Deformation<F>, plastic: &[F; 4], more: F) -> [F; 4] {
         let [xx, yy, xy, _] = self.relief(plastic);
-        let more = mean.map_or(0.0, |mean| self.more(at, plastic, mean));
         let (xx, yy) = (xx - more, yy - more);
         let skew = at.skew([xx, yy, xy]);
-        let p = at.turn_rows([xx, xy + skew, xy - skew, yy]).map(|v| area * v);
-        g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
+        at.turn_rows([xx, xy + skew, xy - skew, yy])
     }
 
     /// Contribution of averages, plastic strain and its growth to the stress xx, yy, xy (Pa) in global axes.
     pub fn stress(&self, at: &Strained, plastic: &PlasticStrain, growth: &PlasticStrain) -> [f64; 3] {
-        let more = self.more(&at.deformation, plastic, at.mean);
+        let more = self.more(at, plastic);
         let [xx, yy, xy, _] = self.relief(&[0, 1, 2, 3].map(|k| plastic[k] + growth[k]));
         at.deformation.turn([more - xx, more - yy, -xy])
     }
@@ -176,18 +178,20 @@ impl YieldingRock {
 }
 
 /// xx + yy + 2ν·zz of a strain: what of it acts on the mean stress in the plane.
-fn volume(rock: &Elasticity, plane_stress: bool, strain: &PlasticStrain) -> f64 {
-    let out = if plane_stress { 0.0 } else { rock.lambda / (rock.lambda + rock.mu) * strain[3] };
-    strain[0] + strain[1] + out
+#[inline(always)]
+fn volume<F: Arithmetic>(rock: &Elasticity, plane_stress: bool, &[xx, yy, _, zz]: &[F; 4]) -> F {
+    let out = if plane_stress { 0.0 } else { rock.lambda / (rock.lambda + rock.mu) };
+    xx + yy + xx.splat(out) * zz
 }
 
 /// C·ε of a plane strain field with strain out of the plane; in plane stress that one costs nothing.
-fn relief(rock: &Elasticity, plane_stress: bool, strain: &[f64; 4]) -> [f64; 4] {
-    let [xx, yy, xy, zz] = *strain;
-    let zz = if plane_stress { 0.0 } else { zz };
-    let volume = rock.lambda * (xx + yy + zz);
-    let out = if plane_stress { 0.0 } else { 2.0 * rock.mu * zz + volume };
-    [2.0 * rock.mu * xx + volume, 2.0 * rock.mu * yy + volume, 2.0 * rock.mu * xy, out]
+#[inline(always)]
+fn relief<F: Arithmetic>(rock: &Elasticity, plane_stress: bool, &[xx, yy, xy, zz]: &[F; 4]) -> [F; 4] {
+    let (zero, lambda, two_mu) = (xx.splat(0.0), xx.splat(rock.lambda), xx.splat(2.0 * rock.mu));
+    let zz = if plane_stress { zero } else { zz };
+    let volume = lambda * (xx + yy + zz);
+    let out = if plane_stress { zero } else { two_mu * zz + volume };
+    [two_mu * xx + volume, two_mu * yy + volume, two_mu * xy, out]
 }
 
 /// a : b of two symmetric tensors xx, yy, xy, zz.
@@ -264,11 +268,35 @@ impl YieldSurface {
     /// elastic.
     ///
     /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
-    #[inline]
     pub fn growth(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
+        self.flow(self.trial(at, Some(pre), plastic))
+    }
+
+    /// Stress xx, yy, xy, zz (Pa) in the axes that rotate with the element, before any growth of plastic strain.
+    #[inline(always)]
+    pub fn trial<F: Arithmetic>(&self, at: &Strained<F>, pre: Option<&[F; 4]>, plastic: &[F; 4]) -> [F; 4] {
         let own = self.own_stress(at, plastic);
-        let [xx, yy, xy] = at.deformation.carried_in_turned_axes(&[pre[0], pre[1], pre[2]]);
-        self.flow([own[0] + xx, own[1] + yy, own[2] + xy, own[3] + pre[3]])
+        let Some(&[xx, yy, xy, zz]) = pre else { return own };
+        let [xx, yy, xy] = at.deformation.carried_in_turned_axes([xx, yy, xy]);
+        [own[0] + xx, own[1] + yy, own[2] + xy, own[3] + zz]
+    }
+
+    /// Lanes in which trial stresses xx, yy, xy, zz (Pa) lie inside the flat planes, as bits; none where there is a
+    /// curve.
+    #[inline(always)]
+    pub fn inside<V: Values>(&self, values: V, trial: &[V::F; 4]) -> u8 {
+        if self.curve.is_some() {
+            return 0;
+        }
+        let [xx, yy, xy, zz] = *trial;
+        let (half, sine) = (values.splat(0.5), values.splat(self.planes.sin_friction));
+        let (mean, difference) = (half * (xx + yy), half * (xx - yy));
+        let radius = values.sqrt(difference * difference + xy * xy);
+        let (largest, smallest) = (values.max(zz, mean + radius), values.min(zz, mean - radius));
+        let beyond = largest - smallest + (largest + smallest) * sine - values.splat(self.planes.shear);
+        let beyond = values.max(beyond, largest - values.splat(self.planes.tension));
+        let most = values.max(values.max(largest, -smallest), values.splat(self.least));
+        values.at_most(beyond, values.splat(ON_SURFACE) * most)
     }
 
     /// Energy (J/m²) that a growth of plastic strain takes between the deformations of two steps: with the mean of the
@@ -293,14 +321,19 @@ impl YieldSurface {
     }
 
     /// C(ε − εp) xx, yy, xy, zz (Pa) in the axes that rotate with the element (Eq. 55).
-    #[inline]
-    fn own_stress(&self, at: &Strained, plastic: &PlasticStrain) -> [f64; 4] {
+    #[inline(always)]
+    fn own_stress<F: Arithmetic>(&self, at: &Strained<F>, plastic: &[F; 4]) -> [F; 4] {
         let Elasticity { lambda, mu, .. } = self.elasticity;
         let [xx, yy, xy] = at.deformation.strain();
-        let half = mu * ((xx - plastic[0]) - (yy - plastic[1]));
-        let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-        let out = if self.plane_stress { 0.0 } else { lambda / (lambda + mu) * at.mean - young * plastic[3] };
-        [at.mean + half, at.mean - half, 2.0 * mu * (xy - plastic[2]), out]
+        let mean = at.mean;
+        let half = mean.splat(mu) * ((xx - plastic[0]) - (yy - plastic[1]));
+        let out = if self.plane_stress {
+            mean.splat(0.0)
+        } else {
+            let young = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+            mean.splat(lambda / (lambda + mu)) * mean - mean.splat(young) * plastic[3]
+        };
+        [mean + half, mean - half, mean.splat(2.0 * mu) * (xy - plastic[2]), out]
     }
 
     /// How far (Pa) a stress xx, yy, xy, zz lies beyond the surface, measured as |s₁ − s₃| or s₁; negative inside.
@@ -308,17 +341,8 @@ impl YieldSurface {
         let sorted = Principal::of(stress, self.plane_stress).sorted;
         match &self.curve {
             None => PLANES[..ORDERED].iter().map(|&p| self.planes.beyond(p, &sorted)).fold(f64::NEG_INFINITY, f64::max),
-            Some(_) => self.beyond(&sorted),
+            Some(curve) => curve.beyond([sorted[0], sorted[2]]).max(self.planes.beyond(PLANES[3], &sorted)),
         }
-    }
-
-    /// The same for principal stresses, the largest first.
-    fn beyond(&self, sorted: &[f64; 3]) -> f64 {
-        let shear = match &self.curve {
-            None => self.planes.beyond(PLANES[0], sorted),
-            Some(curve) => curve.beyond([sorted[0], sorted[2]]),
-        };
-        shear.max(self.planes.beyond(PLANES[3], sorted))
     }
 
     /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; `None` inside (Eq. 57).
@@ -327,15 +351,22 @@ impl YieldSurface {
         let sorted = principal.sorted;
         let most = sorted.iter().fold(self.least, |a, s| a.max(s.abs()));
         let tolerance = ON_SURFACE * most;
-        let excess = self.beyond(&sorted);
+        let tension = self.planes.beyond(PLANES[3], &sorted);
+        let shear = match &self.curve {
+            None => self.planes.beyond(PLANES[0], &sorted),
+            Some(curve) => curve.beyond_at_most([sorted[0], sorted[2]]),
+        };
+        let excess = shear.max(tension);
         if excess.is_nan() || excess <= tolerance {
             return None;
         }
-        let onto = |curve| Onto { curve, rock: &self.elasticity, trial: sorted, tolerance }.flow();
+        let is_pulled = tension > tolerance;
+        let onto = |curve| Onto { curve, rock: &self.elasticity, trial: sorted, tolerance, is_pulled }.flow();
         let back = Return { surface: self, principal: &principal, tolerance };
         let flow = match self.curve.as_ref().map(onto) {
-            Some(Some(flow)) => flow,
-            Some(None) if self.planes.are_a_point() => back.apex(),
+            Some(Returned::Flows(flow)) => flow,
+            Some(Returned::Inside) => return None,
+            Some(_) if self.planes.are_a_point() => back.apex(),
             _ => back.flow(),
         };
         Some(principal.in_plane_axes(flow))
@@ -478,8 +509,10 @@ fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], scale: f64) -> O
 mod tests {
     use enmm_case::{Envelope, HoekBrown};
 
+    use crate::Vector;
+
     use super::*;
-    use crate::mechanics::hoek_brown;
+    use crate::hoek_brown;
 
     fn rock(friction_deg: f64, dilation_deg: f64, tension: Option<f64>, plane_stress: bool) -> YieldingRock {
         let tangent = |degrees: f64| degrees.to_radians().tan();
@@ -644,7 +677,8 @@ mod tests {
         let gradients = [Vector::new(-1.0, -1.0), Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)];
         let (strength, plastic) = (rock(30.0, 0.0, None, false), [0.01, -0.02, 0.005, 0.003]);
         let u = [Vector::new(0.1, -0.2), Vector::new(-0.05, 0.3), Vector::new(0.2, 0.15)];
-        let forces = strength.forces(&Deformation::new(u, &gradients), (&gradients, 1.0), &plastic, None);
+        let p = strength.taken_off(&Deformation::new(u, &gradients), &plastic, 0.0);
+        let forces = gradients.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y));
         for k in 0..3 {
             for axis in 0..2 {
                 let energy = |d: f64| {

@@ -1,9 +1,9 @@
 //! Corotated linear elasticity of one element: deformation, stress, forces and energy from its total displacements
 //! (Eqs. 6–8).
 
-use crate::geometry::{Point, Vector};
+use enmm_lanes::{Arithmetic, First, Values};
 
-use super::Elasticity;
+use crate::{Elasticity, Vector};
 
 /// Stress xx, yy, xy (Pa) in the reference axes of an element before any displacement.
 pub type PreStress = [f64; 3];
@@ -23,57 +23,130 @@ pub struct StressField {
 
 impl StressField {
     /// Stress (Pa) at a position.
-    pub fn at(&self, p: Point) -> PreStress {
+    pub fn at(&self, p: Vector) -> PreStress {
         [0, 1, 2].map(|k| self.value[k] + self.gradient[k] * (p.y - self.y_reference))
     }
 }
 
-/// Deformation gradient of an element, split into rotation and stretch (Eq. 6).
+/// Deformation gradient of an element, or of eight in lanes, split into rotation and stretch (Eq. 6).
 #[doc(alias = "deformation gradient")]
 #[doc(alias = "polar decomposition")]
 #[doc(alias = "corotational")]
 #[derive(Debug, Clone, Copy)]
-pub struct Deformation {
-    f: [f64; 4],
-    cos: f64,
-    sin: f64,
-    trace: f64,
+pub struct Deformation<F = f64> {
+    f: [F; 4],
+    cos: F,
+    sin: F,
+    trace: F,
 }
 
 /// Σ u⊗G of three covers, row by row, and `unit` times I.
-fn gradient(unit: f64, u: [Vector; 3], g: &[Vector; 3]) -> [f64; 4] {
+#[inline(always)]
+fn gradient<F: Arithmetic>(unit: F, u: &[[F; 2]; 3], g: &[[F; 2]; 3]) -> [F; 4] {
     [
-        unit + u[0].x * g[0].x + u[1].x * g[1].x + u[2].x * g[2].x,
-        u[0].x * g[0].y + u[1].x * g[1].y + u[2].x * g[2].y,
-        u[0].y * g[0].x + u[1].y * g[1].x + u[2].y * g[2].x,
-        unit + u[0].y * g[0].y + u[1].y * g[1].y + u[2].y * g[2].y,
+        unit + u[0][0] * g[0][0] + u[1][0] * g[1][0] + u[2][0] * g[2][0],
+        u[0][0] * g[0][1] + u[1][0] * g[1][1] + u[2][0] * g[2][1],
+        u[0][1] * g[0][0] + u[1][1] * g[1][0] + u[2][1] * g[2][0],
+        unit + u[0][1] * g[0][1] + u[1][1] * g[1][1] + u[2][1] * g[2][1],
     ]
 }
 
-impl Deformation {
+#[inline(always)]
+fn pairs(vectors: &[Vector; 3]) -> [[f64; 2]; 3] {
+    vectors.map(|v| [v.x, v.y])
+}
+
+impl<F: Arithmetic> Deformation<F> {
     /// F = I + Σ u⊗G with the displacements of the three covers.
+    #[inline(always)]
+    pub fn of_covers<V: Values<F = F>>(values: V, u: &[[F; 2]; 3], g: &[[F; 2]; 3]) -> Self {
+        Self::of(values, gradient(values.splat(1.0), u, g))
+    }
+
+    /// A deformation whose gradient 11, 12, 21, 22 has been split into a rotation and a stretch of this trace.
+    #[inline(always)]
+    pub fn split(f: [F; 4], [cos, sin]: [F; 2], trace: F) -> Self {
+        Self { f, cos, sin, trace }
+    }
+
+    #[inline(always)]
+    fn of<V: Values<F = F>>(values: V, f: [F; 4]) -> Self {
+        let (a, b) = (f[0] + f[3], f[2] - f[1]);
+        let trace = values.sqrt(a * a + b * b);
+        Self { f, cos: a / trace, sin: b / trace, trace }
+    }
+
+    /// F − R.
+    #[inline(always)]
+    fn stretch(&self) -> [F; 4] {
+        let [f11, f12, f21, f22] = self.f;
+        [f11 - self.cos, f12 + self.sin, f21 - self.sin, f22 - self.cos]
+    }
+
+    /// Volume change tr(RᵀF − I) (Eq. 58a).
+    #[inline(always)]
+    pub fn dilatation(&self) -> F {
+        self.trace - self.trace.splat(2.0)
+    }
+
+    /// Change of the volume change, to first order, while the three covers moved by `moved` (m): R:ΔF. A turn of the
+    /// whole block has no part in it.
+    #[inline(always)]
+    pub fn dilatation_by(&self, moved: &[[F; 2]; 3], g: &[[F; 2]; 3]) -> F {
+        let [d11, d12, d21, d22] = gradient(self.cos.splat(0.0), moved, g);
+        self.cos * (d11 + d22) + self.sin * (d21 - d12)
+    }
+
+    /// Strain RᵀF − I as xx, yy, xy in the axes that rotate with the element (Eq. 54).
+    #[inline(always)]
+    pub fn strain(&self) -> [F; 3] {
+        let d = self.stretch();
+        let (c, s) = (self.cos, self.sin);
+        [c * d[0] + s * d[2], c * d[3] - s * d[1], c.splat(0.5) * (c * (d[1] + d[2]) + s * (d[3] - d[0]))]
+    }
+
+    /// Stress (Pa) by a pre-stress xx, yy, xy in the axes that rotate with the element: RᵀFσ₀FᵀR/det F.
+    #[inline(always)]
+    pub fn carried_in_turned_axes(&self, [xx, yy, xy]: [F; 3]) -> [F; 3] {
+        let [f11, f12, f21, f22] = self.f;
+        let (c, s) = (self.cos, self.sin);
+        let u = [c * f11 + s * f21, c * f12 + s * f22, c * f21 - s * f11, c * f22 - s * f12];
+        let volume = f11 * f22 - f12 * f21;
+        let q = [u[0] * xx + u[1] * xy, u[0] * xy + u[1] * yy, u[2] * xx + u[3] * xy, u[2] * xy + u[3] * yy];
+        let carried = [q[0] * u[0] + q[1] * u[1], q[2] * u[2] + q[3] * u[3], q[0] * u[2] + q[1] * u[3]];
+        [carried[0] / volume, carried[1] / volume, carried[2] / volume]
+    }
+
+    /// (t₁₂(U₁₁ − U₂₂) − U₁₂(t₁₁ − t₂₂))/tr U of the stretch U = RᵀF and a tensor xx, yy, xy in its axes: zero when
+    /// both have the same axes.
+    #[inline(always)]
+    pub fn skew(&self, [xx, yy, xy]: [F; 3]) -> F {
+        let strain = self.strain();
+        (xy * (strain[0] - strain[1]) - strain[2] * (xx - yy)) / self.trace
+    }
+
+    /// R·t of a tensor, row by row.
+    #[inline(always)]
+    pub fn turn_rows(&self, t: [F; 4]) -> [F; 4] {
+        let (c, s) = (self.cos, self.sin);
+        [c * t[0] - s * t[2], c * t[1] - s * t[3], s * t[0] + c * t[2], s * t[1] + c * t[3]]
+    }
+}
+
+impl Deformation {
+    /// The deformation with the displacements of the three covers of an element.
+    #[inline]
     pub fn new(u: [Vector; 3], g: &[Vector; 3]) -> Self {
-        Self::of(gradient(1.0, u, g))
+        Self::of_covers(First, &pairs(&u), &pairs(g))
     }
 
     /// The deformation before the three covers moved by `moved` (m), in the frame of a block that has turned by `turn`
     /// (rad) since: F − ΔF + θJF (Eqs. 81, 82).
     pub fn before(&self, moved: [Vector; 3], turn: f64, g: &[Vector; 3]) -> Self {
         let [f11, f12, f21, f22] = self.f;
-        let [d11, d12, d21, d22] = gradient(0.0, moved, g);
-        Self::of([f11 - d11 - turn * f21, f12 - d12 - turn * f22, f21 - d21 + turn * f11, f22 - d22 + turn * f12])
-    }
-
-    fn of(f: [f64; 4]) -> Self {
-        let (a, b) = (f[0] + f[3], f[2] - f[1]);
-        let trace = (a * a + b * b).sqrt();
-        Self { f, cos: a / trace, sin: b / trace, trace }
-    }
-
-    /// F − R.
-    fn stretch(&self) -> [f64; 4] {
-        let [f11, f12, f21, f22] = self.f;
-        [f11 - self.cos, f12 + self.sin, f21 - self.sin, f22 - self.cos]
+        let [d11, d12, d21, d22] = gradient(0.0, &pairs(&moved), &pairs(g));
+        let before = [f11 - d11 - turn * f21, f12 - d12 - turn * f22, f21 - d21 + turn * f11, f22 - d22 + turn * f12];
+        Self::of(First, before)
     }
 
     /// First Piola–Kirchhoff stress (Pa) without the pre-stress (Eq. 7), row by row.
@@ -118,56 +191,6 @@ impl Deformation {
         let green = [f11 * f11 + f21 * f21 - 1.0, f12 * f12 + f22 * f22 - 1.0, f11 * f12 + f21 * f22];
         let pre_work = 0.5 * (pre[0] * green[0] + pre[1] * green[1]) + pre[2] * green[2];
         rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
-    }
-
-    /// Volume change tr(RᵀF − I) (Eq. 58a).
-    pub fn dilatation(&self) -> f64 {
-        self.trace - 2.0
-    }
-
-    /// Change of the volume change, to first order, while the three covers moved by `moved` (m): R:ΔF. A turn of the
-    /// whole block has no part in it.
-    #[inline]
-    pub fn dilatation_by(&self, moved: [Vector; 3], g: &[Vector; 3]) -> f64 {
-        let [d11, d12, d21, d22] = gradient(0.0, moved, g);
-        self.cos * (d11 + d22) + self.sin * (d21 - d12)
-    }
-
-    /// Strain RᵀF − I as xx, yy, xy in the axes that rotate with the element (Eq. 54).
-    #[inline]
-    pub fn strain(&self) -> [f64; 3] {
-        let d = self.stretch();
-        let (c, s) = (self.cos, self.sin);
-        [c * d[0] + s * d[2], c * d[3] - s * d[1], 0.5 * (c * (d[1] + d[2]) + s * (d[3] - d[0]))]
-    }
-
-    /// Stress (Pa) by a pre-stress in the axes that rotate with the element: RᵀFσ₀FᵀR/det F.
-    pub fn carried_in_turned_axes(&self, pre: &PreStress) -> PreStress {
-        if *pre == [0.0; 3] {
-            return *pre;
-        }
-        let [f11, f12, f21, f22] = self.f;
-        let (c, s) = (self.cos, self.sin);
-        let u = [c * f11 + s * f21, c * f12 + s * f22, c * f21 - s * f11, c * f22 - s * f12];
-        let volume = f11 * f22 - f12 * f21;
-        let [xx, yy, xy] = *pre;
-        let q = [u[0] * xx + u[1] * xy, u[0] * xy + u[1] * yy, u[2] * xx + u[3] * xy, u[2] * xy + u[3] * yy];
-        [q[0] * u[0] + q[1] * u[1], q[2] * u[2] + q[3] * u[3], q[0] * u[2] + q[1] * u[3]].map(|v| v / volume)
-    }
-
-    /// (t₁₂(U₁₁ − U₂₂) − U₁₂(t₁₁ − t₂₂))/tr U of the stretch U = RᵀF and a tensor xx, yy, xy in its axes: zero when
-    /// both have the same axes.
-    #[inline]
-    pub fn skew(&self, [xx, yy, xy]: [f64; 3]) -> f64 {
-        let strain = self.strain();
-        (xy * (strain[0] - strain[1]) - strain[2] * (xx - yy)) / self.trace
-    }
-
-    /// R·t of a tensor, row by row.
-    #[inline]
-    pub fn turn_rows(&self, t: [f64; 4]) -> [f64; 4] {
-        let (c, s) = (self.cos, self.sin);
-        [c * t[0] - s * t[2], c * t[1] - s * t[3], s * t[0] + c * t[2], s * t[1] + c * t[3]]
     }
 
     /// R·t·Rᵀ of a symmetric tensor xx, yy, xy: from the axes that rotate with the element to global ones.
