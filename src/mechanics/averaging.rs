@@ -27,6 +27,8 @@ struct Member {
 #[doc(alias = "volumetric locking")]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Averaging {
+    /// Whether each rock yields; empty when none does.
+    yields: Vec<bool>,
     members: Vec<Member>,
     /// First member of each patch, and their number at the end.
     patch_start: Vec<u32>,
@@ -90,13 +92,14 @@ impl Averages {
 }
 
 impl Averaging {
-    /// The patches of all elements that can yield; elements with a light cover are in none.
-    pub fn new(covers: &Covers, element_rock: &[u16], yields: impl Fn(ElementId) -> bool) -> Self {
-        if !covers.elements().any(&yields) {
+    /// The patches of all elements whose rock yields; elements with a light cover are in none.
+    pub fn new(covers: &Covers, element_rock: &[u16], yields: Vec<bool>) -> Self {
+        let can_yield = |e: ElementId| yields[element_rock[e] as usize];
+        if !covers.elements().any(can_yield) {
             return Self::default();
         }
         let light = light_covers(covers);
-        let averages = |e: &ElementId| yields(*e) && !covers.element_covers[*e].iter().any(|&cover| light[cover]);
+        let averages = |e: &ElementId| can_yield(*e) && !covers.element_covers[*e].iter().any(|&cover| light[cover]);
         let corners = |e: ElementId| (0..3).map(move |corner| (e, corner));
         let mut places: Vec<(ElementId, usize)> = covers.elements().filter(averages).flat_map(corners).collect();
         let patch_of = |&(e, corner): &(ElementId, usize)| (covers.element_covers[e][corner], element_rock[e]);
@@ -109,11 +112,17 @@ impl Averaging {
         let row = |first: usize| {
             let elements = first..first + LANES;
             let rock = element_rock.get(elements.clone())?;
-            let is_one = rock.iter().all(|other| *other == rock[0]) && yields(ElementId::new(first));
+            let is_one = rock.iter().all(|other| *other == rock[0]) && can_yield(ElementId::new(first));
             is_one.then(|| ElementRow::new(covers, &averaging, elements))
         };
         averaging.rows = (0..covers.element_count()).step_by(LANES).map(row).collect();
+        averaging.yields = yields;
         averaging
+    }
+
+    /// Whether elements of a rock can yield.
+    pub fn yields(&self, rock: u16) -> bool {
+        self.yields.get(rock as usize).is_some_and(|yields| *yields)
     }
 
     fn push(&mut self, covers: &Covers, places: &[(ElementId, usize)]) {

@@ -94,7 +94,7 @@ pub struct SomeEights<'a, E> {
     pub list: &'a [E],
     /// In-situ stress of each; empty when the model has none.
     pub pre_stress: &'a [PreStresses],
-    /// Where lanes find what belongs to rock that yields; empty when no rock yields.
+    /// Where lanes find what belongs to rock that yields; empty for rows, and when no rock yields.
     pub yielding: &'a [YieldPlaces],
 }
 
@@ -112,7 +112,7 @@ struct Eights<E> {
     pre_stress: Vec<PreStresses>,
     /// Elements of the lanes; none in an empty one.
     elements: Vec<LaneElements>,
-    /// Places of each; empty when no rock yields.
+    /// Places of each; empty for rows, and when no rock yields.
     yielding: Vec<YieldPlaces>,
 }
 
@@ -366,6 +366,8 @@ impl Cutter<'_> {
 
     fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[ElementId], in_rows: bool) {
         let [first_row, first_group] = [self.chunks.rows.list.len(), self.chunks.groups.list.len()];
+        // Rock that yields gathers more than its covers: one kernel does for all of its elements.
+        let in_rows = in_rows && !self.averaging.yields(rock);
         let others = if in_rows { self.push_rows(set, elements) } else { elements.to_vec() };
         for eight in others.chunks(LANES) {
             let mut ids = [None; LANES];
@@ -422,8 +424,8 @@ impl Cutter<'_> {
     /// Adds a row whose first element has these slots.
     fn push_row(&mut self, first: [u32; 3], ids: LaneElements) {
         let [left, _, tip] = first.map(|slot| Slot::new(slot as usize));
-        let (area, others) = self.lanes(&ids);
-        push_eight(&mut self.chunks.rows, Row { first: [left, tip], area }, others, ids);
+        let (area, pre) = self.lanes(&ids);
+        push_eight(&mut self.chunks.rows, Row { first: [left, tip], area }, pre, ids);
     }
 
     fn push_group(&mut self, ids: LaneElements) {
@@ -431,25 +433,28 @@ impl Cutter<'_> {
         for (lane, e) in lanes_of(&ids) {
             (0..3).for_each(|k| slots[k][lane] = Slot::new(self.slots(e)[k] as usize));
         }
-        let (area, others) = self.lanes(&ids);
-        push_eight(&mut self.chunks.groups, Group { slots, area }, others, ids);
-    }
-
-    /// Areas (m²) of eight elements, and what only some models have: in-situ stress, and places in rock that yields.
-    fn lanes(&self, ids: &LaneElements) -> ([f64; LANES], (Option<PreStresses>, Option<YieldPlaces>)) {
-        let (mut area, mut pre, mut places) = ([0.0; LANES], [[0.0; LANES]; 3], YieldPlaces::default());
-        let yields = !self.averaging.is_empty();
-        for (lane, e) in lanes_of(ids) {
-            area[lane] = self.covers.element_area[e];
-            if yields {
+        let (area, pre) = self.lanes(&ids);
+        push_eight(&mut self.chunks.groups, Group { slots, area }, pre, ids);
+        if !self.averaging.is_empty() {
+            let mut places = YieldPlaces::default();
+            for (lane, e) in lanes_of(&ids) {
                 places.0.set(lane, e, self.averaging);
                 places.1.set(lane, e);
             }
+            self.chunks.groups.yielding.push(places);
+        }
+    }
+
+    /// Areas (m²) of eight elements, and their in-situ stress when the model has any.
+    fn lanes(&self, ids: &LaneElements) -> ([f64; LANES], Option<PreStresses>) {
+        let (mut area, mut pre) = ([0.0; LANES], [[0.0; LANES]; 3]);
+        for (lane, e) in lanes_of(ids) {
+            area[lane] = self.covers.element_area[e];
             if let Some(stress) = self.pre_stress.get(e.index()) {
                 (0..3).for_each(|k| pre[k][lane] = stress[k]);
             }
         }
-        (area, ((!self.pre_stress.is_empty()).then_some(pre), yields.then_some(places)))
+        (area, (!self.pre_stress.is_empty()).then_some(pre))
     }
 }
 
@@ -458,15 +463,9 @@ fn lanes_of(ids: &LaneElements) -> impl Iterator<Item = (usize, ElementId)> {
     ids.iter().enumerate().filter_map(|(lane, id)| Some((lane, (*id)?)))
 }
 
-fn push_eight<E>(
-    eights: &mut Eights<E>,
-    eight: E,
-    (pre, places): (Option<PreStresses>, Option<YieldPlaces>),
-    ids: LaneElements,
-) {
+fn push_eight<E>(eights: &mut Eights<E>, eight: E, pre: Option<PreStresses>, ids: LaneElements) {
     eights.list.push(eight);
     eights.pre_stress.extend(pre);
-    eights.yielding.extend(places);
     eights.elements.push(ids);
 }
 

@@ -97,6 +97,9 @@ pub trait Values: Copy {
 
 /// Instructions of a processor for eight `f64` at once; a value of this type proves that the processor has them.
 pub trait Lanes: Values {
+    /// Whether registers hold several lanes. Where they do not, long formulas are faster lane by lane.
+    const IN_REGISTERS: bool = true;
+
     /// Eight pairs in a row, as x and y.
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Self::F; 2];
 

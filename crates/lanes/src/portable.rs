@@ -128,6 +128,8 @@ impl Values for Portable {
 }
 
 impl Lanes for Portable {
+    const IN_REGISTERS: bool = false;
+
     #[inline(always)]
     fn load_pairs(self, pairs: &[Pair; LANES]) -> [Array; 2] {
         [Array(std::array::from_fn(|k| pairs[k].x)), Array(std::array::from_fn(|k| pairs[k].y))]

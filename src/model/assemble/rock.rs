@@ -46,8 +46,8 @@ fn criterion(rock: &Rock) -> Criterion {
 /// Rock of each element, and the patches of those that can yield.
 pub(super) fn of_elements(case: &Case, positions: &Locator) -> Result<(Vec<u16>, Averaging), Invalid> {
     let rock = assign(case, positions)?;
-    let yields: Vec<bool> = case.rocks.values().map(Rock::yields).collect();
-    let averaging = Averaging::new(positions.covers, &rock, |e| yields[rock[e] as usize]);
+    let yields = case.rocks.values().map(Rock::yields).collect();
+    let averaging = Averaging::new(positions.covers, &rock, yields);
     Ok((rock, averaging))
 }
 

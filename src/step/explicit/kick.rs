@@ -8,7 +8,7 @@ use enmm_lanes::{LANES, Lanes, Table, prefetch};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::mechanics::block_lanes::{CoverKick, Reference, RigidVelocity, Span};
-use crate::mechanics::chunk::{Batch, YieldPlaces};
+use crate::mechanics::chunk::YieldPlaces;
 use crate::mechanics::element_lanes::{self, Elastic, Relief};
 use crate::mechanics::{
     BlockMotion, BlockStart, Chunk, Damping, Deformation, KickStep, MassMatrix, Strained, YieldingRock,
@@ -163,29 +163,16 @@ impl Kick<'_> {
         }
         let mut ahead = self.ahead(chunk, next);
         for batch in chunks.batches(chunk) {
-            match &model.strengths[batch.rock as usize] {
-                Some(strength) => {
-                    let relief = Yielded { strength, kick: self };
-                    self.push_batch(lanes, batch, relief, tables, &mut ahead);
-                }
-                None => self.push_batch(lanes, batch, Elastic, tables, &mut ahead),
+            let rock = &model.rocks[batch.rock as usize];
+            let [in_row, in_group] = chunks.gradients(batch, &model.covers.gradients[batch.set as usize]);
+            if let Some(strength) = &model.strengths[batch.rock as usize] {
+                let relief = Yielded { strength, kick: self };
+                element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group, relief), tables, &mut ahead);
+                continue;
             }
+            element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row, Elastic), tables, &mut ahead);
+            element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group, Elastic), tables, &mut ahead);
         }
-    }
-
-    #[inline(always)]
-    fn push_batch<L: Lanes, R: Relief>(
-        &self,
-        lanes: L,
-        batch: &Batch,
-        relief: R,
-        tables: &mut [Table; 2],
-        ahead: &mut impl FnMut(),
-    ) {
-        let (chunks, rock) = (&self.model.chunks, &self.model.rocks[batch.rock as usize]);
-        let [in_row, in_group] = chunks.gradients(batch, &self.model.covers.gradients[batch.set as usize]);
-        element_lanes::push_forces(lanes, chunks.rows(batch), (rock, in_row, relief), tables, &mut *ahead);
-        element_lanes::push_forces(lanes, chunks.groups(batch), (rock, in_group, relief), tables, ahead);
     }
 }
 

@@ -31,19 +31,21 @@ impl<W: LaneWork> Kernel for InLanes<'_, W> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
-        let Model { averaging, covers, .. } = self.model;
         let Range { start, end } = self.elements;
         for first in (start..end).step_by(LANES) {
-            if let Some(row) = averaging.row(first) {
-                self.work.elements(lanes, row, first..first + LANES);
-                continue;
-            }
-            for e in ElementId::range(first..(first + LANES).min(end)) {
-                if self.model.strength_of(e).is_some() {
-                    let one = e.index()..e.index() + 1;
-                    self.work.elements(First, &ElementRow::new(covers, averaging, one.clone()), one);
-                }
+            match self.model.averaging.row(first) {
+                Some(row) if L::IN_REGISTERS => self.work.elements(lanes, row, first..first + LANES),
+                _ => alone(self.model, first..(first + LANES).min(end), &mut self.work),
             }
         }
+    }
+}
+
+/// Does a work on elements one by one. Apart from the lanes, so that the program has it once.
+#[inline(never)]
+fn alone(model: &Model, elements: Range<usize>, work: &mut impl LaneWork) {
+    for e in ElementId::range(elements).filter(|&e| model.strength_of(e).is_some()) {
+        let one = e.index()..e.index() + 1;
+        work.elements(First, &ElementRow::new(&model.covers, &model.averaging, one.clone()), one);
     }
 }
