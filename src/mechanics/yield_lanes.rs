@@ -21,6 +21,7 @@ pub struct ElementRow {
 
 impl ElementRow {
     /// The elements of a range.
+    #[inline(always)]
     pub fn new(covers: &Covers, averaging: &Averaging, elements: Range<usize>) -> Self {
         let mut row = Self::default();
         for (lane, e) in ElementId::range(elements).enumerate() {
@@ -89,6 +90,7 @@ pub struct PatchPlaces {
 
 impl PatchPlaces {
     /// Gives a lane an element.
+    #[inline(always)]
     pub fn set(&mut self, lane: usize, element: ElementId, averaging: &Averaging) {
         match averaging.patches_of(element) {
             Some(patches) => self.at.iter_mut().zip(patches).for_each(|(at, id)| at.set(lane, id.number())),
