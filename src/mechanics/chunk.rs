@@ -366,7 +366,8 @@ impl Cutter<'_> {
 
     fn push_batch(&mut self, (set, rock): (u8, u16), elements: &[ElementId], in_rows: bool) {
         let [first_row, first_group] = [self.chunks.rows.list.len(), self.chunks.groups.list.len()];
-        // Rock that yields gathers more than its covers: one kernel does for all of its elements.
+        // Rock that yields gathers more than its covers: one kernel does for all of its elements. Empty lanes of a
+        // group have one cover three times, and so no strain.
         let in_rows = in_rows && !self.averaging.yields(rock);
         let others = if in_rows { self.push_rows(set, elements) } else { elements.to_vec() };
         for eight in others.chunks(LANES) {

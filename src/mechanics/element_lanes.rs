@@ -73,7 +73,7 @@ impl Elements for Row {
     }
 }
 
-/// What rock takes off the elastic stress of eight elements.
+/// Stress that rock takes off the elastic one of eight elements.
 pub trait Relief: Copy {
     /// First Piola–Kirchhoff stress (Pa), row by row; none where the rock is elastic.
     fn taken_off<L: Lanes>(&self, lanes: L, of: Option<&YieldPlaces>, at: &Deformation<L::F>) -> Option<[L::F; 4]>;
@@ -102,16 +102,13 @@ struct Constants<F> {
     g: [[F; 2]; 2],
 }
 
-/// Trace of the stretch in a missing element that takes displacements of covers without any: its stresses are finite.
-const LEAST: f64 = 1e-100;
-
 impl<F: Copy> Constants<F> {
     #[inline(always)]
     fn new<L: Lanes<F = F>>(lanes: L, rock: &Elasticity, [g, h]: [Vector; 2]) -> Self {
         Self {
             one: lanes.splat(1.0),
             two: lanes.splat(2.0),
-            least: lanes.splat(LEAST),
+            least: lanes.splat(f64::MIN_POSITIVE),
             two_mu: lanes.splat(2.0 * rock.mu),
             lambda: lanes.splat(rock.lambda),
             g: [[lanes.splat(g.x), lanes.splat(g.y)], [lanes.splat(h.x), lanes.splat(h.y)]],

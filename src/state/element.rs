@@ -10,7 +10,7 @@ use crate::mechanics::{
 
 use super::{Model, State};
 
-/// What rock that yields feels of the patches about it, of whole blocks, and its yield surfaces. Empty where no rock
+/// Averages over patches that rock of whole blocks feels where it yields, and its yield surfaces. Empty where no rock
 /// yields.
 #[derive(Debug, Clone)]
 pub struct Felt {

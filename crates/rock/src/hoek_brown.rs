@@ -69,7 +69,7 @@ pub struct Onto<'a> {
     pub is_pulled: bool,
 }
 
-/// What a return finds.
+/// Result of a return.
 pub enum Returned {
     /// The trial stress lies inside the curve.
     Inside,

@@ -144,8 +144,8 @@ impl YieldingRock {
         relief(&self.elasticity, self.plane_stress, plastic)
     }
 
-    /// What plastic strain takes off the first Piola–Kirchhoff stress (Pa) and `more` of the mean stress adds to it,
-    /// row by row (Eqs. 58, 58c).
+    /// First Piola–Kirchhoff stress (Pa), row by row, that plastic strain takes off, less that which `more` of the mean
+    /// stress adds (Eqs. 58, 58c).
     ///
     /// The skew part makes the forces the gradient of the energy where C·εp and the stretch have different axes, so
     /// that they rotate no element (Eq. 58).
