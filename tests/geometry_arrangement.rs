@@ -1,7 +1,7 @@
 //! Claim: the arrangement is a valid planar subdivision for every input, closes what lies within the tolerance, trims
 //! dead ends and finds islands.
 
-use crate::common::geometry::{face_at, sanity_check};
+use crate::common::geometry::{face_at, ring, rock_areas, sanity_check, square, trace};
 use crate::common::random::Random;
 use enmm::geometry::{Arrangement, FaceId, GeometryError, Label, MeshEdgeId, Point, Segment, TraceId, arrange};
 
@@ -11,28 +11,8 @@ fn checked(segments: &[Segment], tolerance: f64) -> Arrangement {
     arrangement
 }
 
-fn ring(points: &[[f64; 2]], label: Label) -> Vec<Segment> {
-    let place = |k: usize| Point::new(points[k % points.len()][0], points[k % points.len()][1]);
-    (0..points.len()).map(|k| Segment { a: place(k), b: place(k + 1), label }).collect()
-}
-
-fn square(x: f64, y: f64, side: f64, label: Label) -> Vec<Segment> {
-    ring(&[[x, y], [x + side, y], [x + side, y + side], [x, y + side]], label)
-}
-
-fn trace(index: usize, a: [f64; 2], b: [f64; 2]) -> Segment {
-    Segment { a: Point::new(a[0], a[1]), b: Point::new(b[0], b[1]), label: Label::trace(TraceId::new(index)) }
-}
-
 fn reversed(segments: Vec<Segment>) -> Vec<Segment> {
     segments.into_iter().map(|s| Segment { a: s.b, b: s.a, label: s.label }).collect()
-}
-
-fn rock_areas(arrangement: &Arrangement) -> Vec<f64> {
-    let rock = FaceId::all(arrangement.faces.len()).filter(|&face| arrangement.faces[face].winding == 1);
-    let mut areas: Vec<f64> = rock.map(|face| arrangement.face_area(face)).collect();
-    areas.sort_by(f64::total_cmp);
-    areas
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod contact_overlap_audit;
 mod contact_reference;
 mod cosimulation;
 mod crossings;
+mod crumbs;
 mod determinism;
 mod fast_failures;
 mod fracture;

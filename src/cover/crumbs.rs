@@ -8,8 +8,21 @@ use crate::geometry::{Arrangement, FaceId, GeometryError, HalfEdgeId, Point, Tra
 use super::outlines::mesh_only;
 use super::union_find::UnionFind;
 
-/// Share of the longest face of a crumb below which another face holds it too loosely.
-const FACE_SHARE: f64 = 0.25;
+/// Which blocks are crumbs, and what they join.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrumbRule {
+    /// Area (m²) below which a block is a crumb.
+    pub least: f64,
+    /// Share of the longest face of a crumb below which another face holds it too loosely.
+    pub face_share: f64,
+}
+
+impl CrumbRule {
+    /// The rule for a least area (m²).
+    pub fn below(least: f64) -> Self {
+        Self { least, face_share: 0.25 }
+    }
+}
 
 /// A block below the least area.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,14 +35,14 @@ pub struct Crumb {
     pub joined: bool,
 }
 
-/// Lets blocks below an area (m²) join a neighbour, the smallest first: the joint between them is no longer there. All
-/// other joints stay as they are.
+/// Lets blocks below the least area join a neighbour, the smallest first: the joint between them is no longer there.
+/// All other joints stay as they are.
 ///
 /// # Errors
 /// Those of an arrangement.
-pub fn join_crumbs(arrangement: Arrangement, least: f64) -> Result<(Arrangement, Vec<Crumb>), GeometryError> {
+pub fn join_crumbs(arrangement: Arrangement, rule: CrumbRule) -> Result<(Arrangement, Vec<Crumb>), GeometryError> {
     let blocks = Blocks::of(&arrangement);
-    let small = blocks.below(least);
+    let small = blocks.below(rule.least);
     if small.is_empty() {
         return Ok((arrangement, Vec::new()));
     }
@@ -37,7 +50,7 @@ pub fn join_crumbs(arrangement: Arrangement, least: f64) -> Result<(Arrangement,
     let mut crumbs = Vec::with_capacity(small.len());
     for block in small {
         let Block { area, first } = blocks.all[&block];
-        crumbs.push(Crumb { area, place: first / area, joined: joined.grow(block, least) });
+        crumbs.push(Crumb { area, place: first / area, joined: joined.grow(block, rule) });
     }
     let roots = joined.sets.roots();
     let parts_one_block =
@@ -147,10 +160,10 @@ impl Joined {
     }
 
     /// Lets a block join the neighbour across the shortest joint, of equal ones along the longest face, unless it has
-    /// the least area (m²), alone or by what has joined it; returns whether it is part of a larger block now.
-    fn grow(&mut self, block: FaceId, least: f64) -> bool {
+    /// the least area, alone or by what has joined it; returns whether it is part of a larger block now.
+    fn grow(&mut self, block: FaceId, rule: CrumbRule) -> bool {
         let own = self.sets.root(block);
-        if self.area[&own] >= least {
+        if self.area[&own] >= rule.least {
             return true;
         }
         let mut shared: BTreeMap<FaceId, Face> = BTreeMap::new();
@@ -162,7 +175,7 @@ impl Joined {
             }
         }
         let longest = shared.values().map(|face| face.length).fold(0.0, f64::max);
-        shared.retain(|_, face| face.length >= FACE_SHARE * longest);
+        shared.retain(|_, face| face.length >= rule.face_share * longest);
         let shorter = |a: &Face, b: &Face| a.joint.total_cmp(&b.joint).then(b.length.total_cmp(&a.length));
         let Some((&other, _)) = shared.iter().min_by(|a, b| shorter(a.1, b.1).then(a.0.cmp(b.0))) else {
             return false;

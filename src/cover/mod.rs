@@ -11,7 +11,7 @@ mod outlines;
 mod union_find;
 
 pub use covers::Covers;
-pub use crumbs::{Crumb, join_crumbs};
+pub use crumbs::{Crumb, CrumbRule, join_crumbs};
 pub use cut::cut;
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};

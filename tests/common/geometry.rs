@@ -1,6 +1,30 @@
-//! The sanity check that tests run after every arrangement.
+//! Segments for arrangements, and the sanity check that tests run after every arrangement.
 
-use enmm::geometry::{Arrangement, FaceId, HalfEdgeId, Point, orientation, polygon};
+use enmm::geometry::{Arrangement, FaceId, HalfEdgeId, Label, Point, Segment, TraceId, orientation, polygon};
+
+/// Sides of a closed polygon.
+pub fn ring(points: &[[f64; 2]], label: Label) -> Vec<Segment> {
+    let place = |k: usize| Point::new(points[k % points.len()][0], points[k % points.len()][1]);
+    (0..points.len()).map(|k| Segment { a: place(k), b: place(k + 1), label }).collect()
+}
+
+/// Sides of a square, by its lower left corner.
+pub fn square(x: f64, y: f64, side: f64, label: Label) -> Vec<Segment> {
+    ring(&[[x, y], [x + side, y], [x + side, y + side], [x, y + side]], label)
+}
+
+/// A straight trace.
+pub fn trace(index: usize, a: [f64; 2], b: [f64; 2]) -> Segment {
+    Segment { a: Point::new(a[0], a[1]), b: Point::new(b[0], b[1]), label: Label::trace(TraceId::new(index)) }
+}
+
+/// Areas of the faces in the rock, the least first.
+pub fn rock_areas(arrangement: &Arrangement) -> Vec<f64> {
+    let rock = FaceId::all(arrangement.faces.len()).filter(|&face| arrangement.faces[face].winding == 1);
+    let mut areas: Vec<f64> = rock.map(|face| arrangement.face_area(face)).collect();
+    areas.sort_by(f64::total_cmp);
+    areas
+}
 
 /// Asserts what holds for every arrangement: twins, cycles, faces, labels, winding, areas, Euler's formula, and edges
 /// that meet in common vertices only (the last by testing every pair: for small inputs).

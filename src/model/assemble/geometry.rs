@@ -1,6 +1,6 @@
 //! Outline, joints, joint sets and mesh edges in one arrangement.
 
-use crate::cover::{self, Crumb, RegularMesh};
+use crate::cover::{self, Crumb, CrumbRule, RegularMesh};
 use crate::geometry::loops::{validate_holes, validate_loop};
 use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon};
 use crate::model::case::{Case, Invalid};
@@ -56,7 +56,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let arranged = arrange_within(&segments, tolerance, demand.edges_max());
     let arrangement = arranged.map_err(|error| demand.explain(&error))?;
     demand.check_edges(&arrangement)?;
-    let joined = cover::join_crumbs(arrangement, case.mesh.least_block());
+    let joined = cover::join_crumbs(arrangement, CrumbRule::below(case.mesh.least_block()));
     let (mut arrangement, crumbs) = joined.map_err(|error| demand.explain(&error))?;
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
