@@ -45,9 +45,9 @@ impl Kernel for Settle<'_> {
             let moved = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick);
             add_works(outcome, contact, moved, [stored, slipped]);
             let law = &setting.laws[contact.law];
-            let steepest = stored.abs() / contact.history.normal_force.max(0.0);
-            let (way, raised) = law.dilate(contact.history.way, slipped, steepest);
-            outcome.dilation += raised * (contact.history.normal_force + 0.5 * contact.stiffness[0] * raised);
+            let lift = Lift::of(contact, after[0] * dt);
+            let (way, raised) = law.dilate(contact.history.way, slipped, lift.highest((stored * slipped).abs()));
+            outcome.dilation += lift.work(raised);
             add_depths(outcome, contact);
             *history = history_of(contact, stored, slipped, &setting);
             let crushed = contact.crush(&setting);
@@ -74,6 +74,47 @@ fn add_works(
     let history = &contact.history;
     outcome.work += history.normal_force * normal + history.shear_force * shear;
     outcome.friction += (stored * slipped).abs();
+}
+
+/// What lifts a contact: its normal force and spring. The force is that of the end of the step; a spring that opens in
+/// the step holds more before, so that a step loses that energy, and lifting as far back is free of it.
+#[derive(Clone, Copy)]
+struct Lift {
+    normal: f64,
+    spring: f64,
+    /// How far (m) the step opens the contact while it stays closed.
+    opened: f64,
+}
+
+impl Lift {
+    #[inline(always)]
+    fn of(contact: &VertexEdge, opened: f64) -> Self {
+        let normal = contact.history.normal_force.max(0.0);
+        Self { normal, spring: contact.stiffness[0], opened: if normal > 0.0 { opened.max(0.0) } else { 0.0 } }
+    }
+
+    /// How high (m) the work of friction (J/m) can lift it.
+    #[inline(always)]
+    fn highest(&self, friction: f64) -> f64 {
+        let Self { normal, spring, opened } = *self;
+        if friction < normal * opened {
+            return friction / normal;
+        }
+        let twice = 2.0 * friction + spring * opened * opened;
+        let root = (normal * normal + spring * twice).sqrt();
+        if twice > 0.0 { twice / (normal + root) } else { 0.0 }
+    }
+
+    /// Work (J/m) of lifting it by `raised` (m). One that comes down gives no more than its spring holds.
+    #[inline(always)]
+    fn work(&self, raised: f64) -> f64 {
+        let Self { normal, spring, opened } = *self;
+        if raised > 0.0 {
+            return raised * normal + 0.5 * spring * (raised * raised - opened * opened).max(0.0);
+        }
+        let raised = raised.max(-normal / spring);
+        raised * (normal + 0.5 * spring * raised)
+    }
 }
 
 /// Adds the energy that crushed rock takes.

@@ -228,13 +228,12 @@ impl JointLaw {
     }
 
     /// How a joint that slips by `slip` (m) climbs its asperities, from a way (m) up or down along them: the way after
-    /// it, and what it opens (m) (Eq. 21). It climbs no steeper than `steepest`, friction over normal force, so that it
-    /// takes no more work than friction gives.
+    /// it, and what it opens (m) (Eq. 21), at most `highest`, so that it takes no more work than friction gives.
     #[inline(always)]
-    pub fn dilate(&self, way: f64, slip: f64, steepest: f64) -> (f64, f64) {
+    pub fn dilate(&self, way: f64, slip: f64, highest: f64) -> (f64, f64) {
         let after = (way + slip).clamp(-self.dilation_slip, self.dilation_slip);
-        let climbs = after.abs() > way.abs();
-        let share = if climbs && steepest < self.dilation { steepest / self.dilation } else { 1.0 };
+        let rise = (after.abs() - way.abs()) * self.dilation;
+        let share = if rise > highest { highest / rise } else { 1.0 };
         let after = way + (after - way) * share;
         (after, (after.abs() - way.abs()) * self.dilation)
     }
