@@ -76,10 +76,11 @@ fn add_works(
     outcome.friction += (stored * slipped).abs();
 }
 
-/// What lifts a contact: its normal force and spring. The force is that of the end of the step; a spring that opens in
-/// the step holds more before, so that a step loses that energy, and lifting as far back is free of it.
+/// Load on a contact that its asperities lift (Eq. 21). The force is that of the end of the step. A spring that opens in
+/// the step held more before, and the step has lost that energy: lifting as far again takes the work of the force alone.
 #[derive(Clone, Copy)]
 struct Lift {
+    /// Normal force (N/m) and spring (N/m per metre).
     normal: f64,
     spring: f64,
     /// How far (m) the step opens the contact while it stays closed.
