@@ -76,8 +76,9 @@ fn add_works(
     outcome.friction += (stored * slipped).abs();
 }
 
-/// Load on a contact that its asperities lift (Eq. 21). The force is that of the end of the step. A spring that opens in
-/// the step held more before, and the step has lost that energy: lifting as far again takes the work of the force alone.
+/// Load on a contact that its asperities lift (Eq. 21). The force is that of the end of the step. A spring that opens
+/// in the step held more before, and the step has lost that energy: lifting as far again takes the work of the force
+/// alone.
 #[derive(Clone, Copy)]
 struct Lift {
     /// Normal force (N/m) and spring (N/m per metre).
