@@ -159,7 +159,7 @@ const ON_SLOPE: Shaken = Shaken {
     mesh: 3.0,
 };
 
-/// What the block slips (m); the heat of friction must never fall.
+/// Slip (m) of the block. The heat of friction must never fall.
 fn shaken(setting: Shaken) -> Vector {
     let Shaken { slope_deg, friction_deg, dilation_deg, stiffness, peak, tapered, mesh } = setting;
     let slope = slope_deg.to_radians();

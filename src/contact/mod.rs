@@ -22,7 +22,7 @@ pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use constants::EntranceRule;
 pub use frame::Frames;
-pub use law::{Bond, Closure, Damaged, JointLaw, LawId, Limits, Roughness, Softening};
+pub use law::{Bond, Closure, Damaged, JointLaw, LawId, LiftLoad, Lifted, Limits, Roughness, Softening};
 pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, entrance_edges, prefiltered};
 pub use pair::Pair;
 #[doc(hidden)]

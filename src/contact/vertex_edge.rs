@@ -4,7 +4,7 @@
 use crate::cover::{self, BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 
-use super::{Bond, Boundary, Closure, EdgeId, Frames, JointLaw, LawId, Limits, NodeId, Pair, SideId};
+use super::{Bond, Boundary, Closure, EdgeId, Frames, JointLaw, LawId, LiftLoad, Limits, NodeId, Pair, SideId};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -259,6 +259,14 @@ impl VertexEdge {
     #[inline(always)]
     pub fn closure(&self, setting: &ContactSetting) -> Closure {
         Closure { stiffness: self.stiffness[0], most: setting.laws[self.law].closure_max }
+    }
+
+    /// The load that the asperities lift after a step that opens the contact by `opened` (m).
+    #[inline(always)]
+    pub fn lift_load(&self, opened: f64) -> LiftLoad {
+        let normal = self.history.normal_force.max(0.0);
+        let opened = if normal > 0.0 { opened.max(0.0) } else { 0.0 };
+        LiftLoad { normal, spring: self.stiffness[0], opened }
     }
 
     /// What the contact loses because the rock carries no more than its strength over the length (Eq. 87).

@@ -43,16 +43,16 @@ impl Kernel for Settle<'_> {
             let [before, after] = [relative(velocities[0]), relative(velocities[1])];
             let (stored, slipped) = contact.shear_after(after[1] * dt, contact.gap + after[0] * dt, &setting);
             let moved = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick);
-            add_works(outcome, contact, moved, [stored, slipped]);
-            let law = &setting.laws[contact.law];
-            let lift = Lift::of(contact, after[0] * dt);
-            let (way, raised) = law.dilate(contact.history.way, slipped, lift.highest((stored * slipped).abs()));
-            outcome.dilation += lift.work(raised);
+            let heat = (stored * slipped).abs();
+            add_works(outcome, contact, moved, heat);
+            let load = contact.lift_load(after[0] * dt);
+            let lifted = setting.laws[contact.law].dilate(contact.history.way, slipped, heat, &load);
+            outcome.dilation += lifted.work;
             add_depths(outcome, contact);
             *history = history_of(contact, stored, slipped, &setting);
             let crushed = contact.crush(&setting);
             add_crush(outcome, &crushed);
-            (history.way, history.unloaded.rest) = (way, history.unloaded.rest + raised - crushed.closes);
+            (history.way, history.unloaded.rest) = (lifted.way, history.unloaded.rest + lifted.raised - crushed.closes);
             history.unloaded.offset *= fade;
             history.felt = contact.felt_after(&setting);
             if rests {
@@ -62,61 +62,13 @@ impl Kernel for Settle<'_> {
     }
 }
 
-/// Adds the works of a contact that has moved by `moved` (m), normal and shear, and now stores the shear force `stored`
-/// (N/m) after a slip (m): heat is the part of the work that the spring gave up by slipping, and never negative.
+/// Adds the works of a contact that has moved by `moved` (m), normal and shear, with the heat (J/m) of its slip: the
+/// part of the work that the spring gave up, and never negative.
 #[inline(always)]
-fn add_works(
-    outcome: &mut ContactOutcome,
-    contact: &VertexEdge,
-    [normal, shear]: [f64; 2],
-    [stored, slipped]: [f64; 2],
-) {
+fn add_works(outcome: &mut ContactOutcome, contact: &VertexEdge, [normal, shear]: [f64; 2], heat: f64) {
     let history = &contact.history;
     outcome.work += history.normal_force * normal + history.shear_force * shear;
-    outcome.friction += (stored * slipped).abs();
-}
-
-/// Load on a contact that its asperities lift (Eq. 21). The force is that of the end of the step. A spring that opens
-/// in the step held more before, and the step has lost that energy: lifting as far again takes the work of the force
-/// alone.
-#[derive(Clone, Copy)]
-struct Lift {
-    /// Normal force (N/m) and spring (N/m per metre).
-    normal: f64,
-    spring: f64,
-    /// How far (m) the step opens the contact while it stays closed.
-    opened: f64,
-}
-
-impl Lift {
-    #[inline(always)]
-    fn of(contact: &VertexEdge, opened: f64) -> Self {
-        let normal = contact.history.normal_force.max(0.0);
-        Self { normal, spring: contact.stiffness[0], opened: if normal > 0.0 { opened.max(0.0) } else { 0.0 } }
-    }
-
-    /// How high (m) the work of friction (J/m) can lift it.
-    #[inline(always)]
-    fn highest(&self, friction: f64) -> f64 {
-        let Self { normal, spring, opened } = *self;
-        if friction < normal * opened {
-            return friction / normal;
-        }
-        let twice = 2.0 * friction + spring * opened * opened;
-        let root = (normal * normal + spring * twice).sqrt();
-        if twice > 0.0 { twice / (normal + root) } else { 0.0 }
-    }
-
-    /// Work (J/m) of lifting it by `raised` (m). One that comes down gives no more than its spring holds.
-    #[inline(always)]
-    fn work(&self, raised: f64) -> f64 {
-        let Self { normal, spring, opened } = *self;
-        if raised > 0.0 {
-            return raised * normal + 0.5 * spring * (raised * raised - opened * opened).max(0.0);
-        }
-        let raised = raised.max(-normal / spring);
-        raised * (normal + 0.5 * spring * raised)
-    }
+    outcome.friction += heat;
 }
 
 /// Adds the energy that crushed rock takes.

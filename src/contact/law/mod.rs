@@ -1,9 +1,11 @@
 //! Joint laws: stiffness and strength of a joint, as pure functions of force, length and slip (theory §7).
 
 mod barton_bandis;
+mod dilation;
 mod softening;
 
 pub use barton_bandis::{Closure, Roughness};
+pub use dilation::{LiftLoad, Lifted};
 pub use softening::{Bond, Damaged, Softening};
 
 use crate::geometry::id;
@@ -225,16 +227,5 @@ impl JointLaw {
     pub fn stiffness(&self, length: f64, penalty_length: f64) -> [f64; 2] {
         let over = |penalty: bool| if penalty { penalty_length } else { length };
         [self.normal_stiffness * over(self.penalty[0]), self.shear_stiffness * over(self.penalty[1])]
-    }
-
-    /// How a joint that slips by `slip` (m) climbs its asperities, from a way (m) up or down along them: the way after
-    /// it, and what it opens (m) (Eq. 21), at most `highest`, so that it takes no more work than friction gives.
-    #[inline(always)]
-    pub fn dilate(&self, way: f64, slip: f64, highest: f64) -> (f64, f64) {
-        let after = (way + slip).clamp(-self.dilation_slip, self.dilation_slip);
-        let rise = (after.abs() - way.abs()) * self.dilation;
-        let share = if rise > highest { highest / rise } else { 1.0 };
-        let after = way + (after - way) * share;
-        (after, (after.abs() - way.abs()) * self.dilation)
     }
 }
