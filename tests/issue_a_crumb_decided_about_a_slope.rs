@@ -8,7 +8,6 @@ use enmm_io::parse_case;
 
 use crate::common::pit::PIT;
 
-
 /// A block of 10 m by 6 m, held at its base, with joints and more.
 fn built(joints: &[[[f64; 2]; 2]], more: &str) -> Simulation {
     let joint = |[a, b]: &[[f64; 2]; 2]| format!("[[joint]]\npoints = [{a:?}, {b:?}]\n");
