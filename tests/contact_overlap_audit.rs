@@ -47,3 +47,22 @@ fn a_failing_slope_overlaps_by_little() {
     assert!(speed > 3.0, "the slope must fail: {speed} m/s");
     assert!(worst < 0.05 * SIZE, "overlap {worst:e} m");
 }
+
+/// Cracks inside a block are loops of their own. Taken for parts of the outline, they gave a base rock in its notch.
+#[test]
+fn cracks_inside_a_block_make_no_overlap() {
+    let cracks = ["[[1.0, 0.5], [1.4, 1.5]]", "[[4.6, 1.5], [5.0, 0.5]]"];
+    for [first, second] in [cracks, [cracks[1], cracks[0]]] {
+        let mut simulation = simulation(&format!(
+            "title = \"notch\"\n[domain]\noutline = [[0.0, -2.0], [6.0, -2.0], [6.0, 2.0], [4.0, 2.0], [4.0, 0.0], \
+             [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]\nislands = [[[2.5, 0.0], [3.5, 0.0], [3.5, 0.8], [2.5, 0.8]]]\n\
+             [mesh]\nsize = 0.5\n[[joint]]\npoints = {first}\n[[joint]]\npoints = {second}\n\
+             [joint_law.joint]\nfriction_deg = 30.0\n[[fix]]\nblock = [3.0, -1.0]\n{}{}",
+            rock(5e9, 2650.0),
+            dynamic("rest", 1.0, 0.1)
+        ));
+        simulation.advance(false).expect("a step");
+        let overlap = Audit::new(&simulation).deepest(&simulation);
+        assert!(overlap.depth < 1e-6, "{first}, {second}: {overlap:?}");
+    }
+}

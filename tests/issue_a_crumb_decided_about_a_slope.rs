@@ -6,7 +6,7 @@ use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm_io::parse_case;
 
-use crate::common::jittering_pit::PIT;
+use crate::common::pit::PIT;
 
 /// A block of 10 m by 6 m, held at its base, with joints and more.
 fn built(joints: &[[[f64; 2]; 2]], more: &str) -> Simulation {
@@ -89,13 +89,29 @@ fn a_crumb_that_falls_is_named_and_holds_up_no_stage() {
     assert!(restless.to_string().contains("in free flight"), "{restless}");
 }
 
-/// It shook its neighbours, which had more energy than the crumb itself in a part of each swing. Reports that met this
-/// part began the time of rest anew, and the stage ran for all of 20 s.
+/// A crumb of 0.24 m² in a pit is pushed at 2 mm/s before two reports of three. At the third its neighbours, which it
+/// has shaken, have more energy than the crumb: such reports began the time of rest anew, and a stage ran for all of
+/// 20 s.
 #[test]
-fn a_crumb_that_jitters_and_shakes_its_neighbours_holds_up_no_stage() {
+fn a_crumb_that_shakes_its_neighbours_holds_up_no_stage() {
     let loaded = parse_case(PIT, "case.toml", Path::new("")).expect("reads");
     let mut simulation = Simulation::new(loaded.case).expect("builds");
-    let report = simulation.run_stage().expect("rests");
+    let covers = &simulation.model().covers;
+    let crumb = covers.blocks().find(|&b| (covers.block_area(b) - 0.241).abs() < 1e-3).expect("the crumb");
+    let own = covers.covers_of(crumb);
+    let report = loop {
+        let step = simulation.state().step;
+        let pushed = step.is_multiple_of(10) && !step.is_multiple_of(30);
+        if pushed {
+            let mut state = simulation.state().clone();
+            state.velocity[own.clone()].iter_mut().for_each(|v| v.y += 2e-3);
+            simulation.restore(state);
+        }
+        let report = simulation.advance(step.is_multiple_of(10)).expect("moves");
+        if pushed && (simulation.at_rest(&report) || simulation.time() > 0.7) {
+            break report;
+        }
+    };
     assert!(simulation.at_rest(&report) && simulation.time() < 0.5, "{} s", simulation.time());
     let [restless] = &simulation.restless(&report)[..] else { panic!("{:?}", simulation.restless(&report)) };
     assert!((restless.area - 0.241).abs() < 1e-3 && restless.speed < 3e-3, "{restless:?}");

@@ -33,6 +33,7 @@ mod issue_a_crumb_decided_about_a_slope;
 mod issue_a_report_was_worked_out_twice;
 mod issue_blocks_in_each_other_were_not_seen;
 mod issue_blocks_that_spun_gained_energy;
+mod issue_clamped_blocks_oscillated;
 mod issue_cohesion_counted_twice_where_joints_end;
 mod issue_cohesive_joint_in_shear_never_settled;
 mod issue_corner_on_an_inner_node_lost_its_length;

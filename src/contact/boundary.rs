@@ -38,9 +38,9 @@ pub enum Corner {
 pub struct Boundary {
     /// Covers of the element that carries point `k`.
     pub covers: Vec<[CoverId; 3]>,
-    /// Covers of the element that carries edge `k`.
-    pub edge_covers: Vec<[CoverId; 3]>,
-    /// Edges that lie on a sliver, in their order: the edge follows the host of that element.
+    /// Covers that carry edge `k` up to its middle and beyond: those of its element, on a sliver of the nearer end.
+    pub edge_covers: Vec<[[CoverId; 3]; 2]>,
+    /// Edges that lie on a sliver, in their order.
     pub slivers: Vec<(EdgeId, ElementId)>,
     /// Weights of the covers of point `k` there.
     pub weights: Vec<Weights>,
@@ -169,9 +169,9 @@ impl Boundary {
         self.trace[self.nodes.point[node]].or(self.trace[self.nodes.edge_before[node]])
     }
 
-    /// Covers that may carry positions on an edge: its own and those of both of its ends.
+    /// Covers that may carry positions on an edge.
     pub fn covers_on(&self, edge: EdgeId) -> impl Iterator<Item = CoverId> {
-        [self.edge_covers[edge], self.covers[edge], self.covers[self.after(edge)]].into_iter().flatten()
+        self.edge_covers[edge].into_iter().flatten()
     }
 
     /// Edges of both segments that end at a node, from the node before it to the one after it.
@@ -237,13 +237,15 @@ impl Boundary {
                 self.nodes.convex.push(station.corner && station.turn > 0.0);
                 self.nodes.edge_before.push(EdgeId::new(if k == 0 { last } else { first + k - 1 }));
             }
-            let before = &stations[if k == 0 { stations.len() } else { k } - 1];
-            let [before, after] = [before, station].map(|station| station.piece.element);
-            let element = carrier(before, after);
+            let on = |k: usize| stations[k % stations.len()].piece.element;
+            let own = on(k);
+            let [element, next] = [carrier(on(k + stations.len() - 1), own), carrier(own, on(k + 1))];
             self.covers.push(covers.element_covers[element]);
-            self.edge_covers.push(covers.element_covers[covers.host[after]]);
-            if covers.host[after] != after {
-                self.slivers.push((edge, after));
+            let is_sliver = covers.host[own] != own;
+            let halves = if is_sliver { [element, next] } else { [own; 2] };
+            self.edge_covers.push(halves.map(|element| covers.element_covers[element]));
+            if is_sliver {
+                self.slivers.push((edge, own));
             }
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);

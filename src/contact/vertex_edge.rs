@@ -39,7 +39,7 @@ pub struct ContactHistory {
     pub shear_force: f64,
     /// Normal force that friction feels (N/m): that of the last milliseconds (Eq. 84).
     pub felt: f64,
-    /// Change of both forces in the last step (N/m).
+    /// Change of both forces in the last step (N/m), 0 of one that turned back in a static stage.
     pub trend: [f64; 2],
     /// Elastic shear of the spring (m), independent of the length of the contact.
     pub sheared: f64,
@@ -166,7 +166,7 @@ pub struct ContactSetting<'a> {
     pub crush_length: f64,
 }
 
-/// Share of the last change of the forces that the warm start adds: with 0.7 or more, contacts at rest oscillate.
+/// Share of the last change of the forces that the warm start adds.
 const EXPECTED: f64 = 0.5;
 
 impl VertexEdge {
@@ -343,7 +343,7 @@ impl VertexEdge {
         (stored, (stored - trial) / self.stiffness[1])
     }
 
-    /// Warm start: a contact that stays closed begins with its last force plus half of its last change, within its
+    /// Warm start: a contact that stays closed begins with its last force plus a share of its last change, within its
     /// `limits`.
     #[inline(always)]
     pub fn expected(&self, limits: &Limits) -> [f64; 2] {
@@ -356,12 +356,14 @@ impl VertexEdge {
         [normal_force, shear_force]
     }
 
-    /// Stores the forces (N/m) at the end of an explicit step, as `bear` does, and their change.
+    /// Stores the forces (N/m) at the end of an explicit step, as `bear` does, and their change. In a stage that
+    /// `rests` a change that turned back foretells nothing: to go on with it would keep contacts in oscillation.
     #[inline(always)]
-    pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool, setting: &ContactSetting) {
-        let ContactHistory { normal_force, shear_force, .. } = self.history;
+    pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool, rests: bool, setting: &ContactSetting) {
+        let ContactHistory { normal_force, shear_force, trend, .. } = self.history;
         self.bear(forces, bears, torn, self.shear_limit(forces[0], setting));
-        self.history.trend = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
+        let change = [self.history.normal_force - normal_force, self.history.shear_force - shear_force];
+        self.history.trend = [0, 1].map(|k| if rests && change[k] * trend[k] < 0.0 { 0.0 } else { change[k] });
     }
 
     /// Stores the forces (N/m) of the joint, of which no normal one is left unless it `bears`, under a limit of shear

@@ -74,8 +74,13 @@ pub fn centroid(polygon: &[Point]) -> Point {
 
 /// Whether a point lies in a polygon by the even–odd rule with exact signs; the boundary is inside.
 pub fn contains(polygon: &[Point], p: Point) -> bool {
+    enclose(sides(polygon), p)
+}
+
+/// Whether the sides of a polygon and of its holes, in any order, enclose a point by the same rule.
+pub fn enclose(sides: impl IntoIterator<Item = (Point, Point)>, p: Point) -> bool {
     let mut inside = false;
-    for (a, b) in sides(polygon) {
+    for (a, b) in sides {
         let (low, high) = (a.inf(&b), a.sup(&b));
         if p.y < low.y || p.y > high.y || p.x > high.x {
             continue;

@@ -56,16 +56,17 @@ fn closure(contact: &VertexEdge) -> f64 {
     (contact.history.normal_force / contact.stiffness[0]).max(contact.loaded_penetration())
 }
 
-/// The blocks of a model, cut into triangles once.
+/// The blocks of a model, the simple ones cut into triangles once.
 #[derive(Debug, Clone)]
 pub struct Audit {
     /// Boundary points of each block.
     points: Vec<Vec<EdgeId>>,
     /// Those of them that are nodes.
     nodes: Vec<Vec<EdgeId>>,
-    /// Triangles of boundary points of each block that is not cracked.
+    /// Triangles of boundary points of each block that is simple.
     triangles: Vec<Vec<[EdgeId; 3]>>,
-    cracked: Vec<bool>,
+    /// Whether each block is one loop without a crack.
+    simple: Vec<bool>,
 }
 
 /// A block at its current place.
@@ -81,16 +82,17 @@ impl Audit {
     /// Cuts the blocks of a model.
     pub fn new(simulation: &Simulation) -> Self {
         let (boundary, blocks) = (&simulation.model().boundary, simulation.model().covers.block_count());
-        let (mut points, mut cracked) = (vec![Vec::new(); blocks], vec![false; blocks]);
-        for k in boundary.edges() {
-            let block = boundary.block[k];
-            points[block].push(k);
-            cracked[block] |= boundary.partial[k];
-        }
+        let mut points = vec![Vec::new(); blocks];
+        boundary.edges().for_each(|k| points[boundary.block[k]].push(k));
+        let is_simple = |points: &Vec<EdgeId>| {
+            let loops = points.iter().filter(|&&k| boundary.after(k) <= k).count();
+            loops == 1 && points.iter().all(|&k| !boundary.partial[k])
+        };
+        let simple: Vec<bool> = points.iter().map(is_simple).collect();
         let is_node = |k: &EdgeId| boundary.nodes.point[boundary.node_before[*k]] == *k;
         let nodes = points.iter().map(|points| points.iter().copied().filter(is_node).collect()).collect();
-        let triangles = (0..blocks).map(|b| if cracked[b] { Vec::new() } else { cut(boundary, &points[b]) }).collect();
-        Self { points, nodes, triangles, cracked }
+        let triangles = (0..blocks).map(|b| if simple[b] { cut(boundary, &points[b]) } else { Vec::new() }).collect();
+        Self { points, nodes, triangles, simple }
     }
 
     /// Deepest overlap among all pairs of blocks that are near each other, at the places of the last step.
@@ -128,7 +130,7 @@ impl Audit {
         let placed = blocks.map(|block| self.placed(block.index(), &place));
         let (depth, at_nodes) = if placed[0].is_apart(placed[1].low, placed[1].high) {
             (0.0, 0.0)
-        } else if self.cracked[p] || self.cracked[q] {
+        } else if !(self.simple[p] && self.simple[q]) {
             let depth = |of: &[Vec<EdgeId>]| {
                 let depth = |p: BlockId, q: BlockId| corner_depth(boundary, &place, &of[p], &self.points[q]);
                 depth(p, q).max(depth(q, p))
@@ -273,25 +275,25 @@ fn deepest_corner(points: &[Point], q: &Placed) -> f64 {
     polygon::deepest_corner(&neighbours, &q.points)
 }
 
-/// Distance (m) of the deepest point of `p` in `q` from the boundary of `q`, closed cracks left out.
+/// Distance (m) of the deepest point of `p` in `q` from the loops of `q`, closed cracks left out.
 fn corner_depth(boundary: &Boundary, place: &impl Fn(EdgeId) -> Point, p: &[EdgeId], q: &[EdgeId]) -> f64 {
-    let polygon: Vec<Point> = q.iter().map(|&k| place(k)).collect();
     let ends = |e: EdgeId| (place(e), place(boundary.after(e)));
+    let sides: Vec<(Point, Point)> = q.iter().map(|&e| ends(e)).collect();
+    let is_inside = |x: Point| polygon::enclose(sides.iter().copied(), x);
     // A crack's wall is a way in where the crack stands open by as much as the point lies behind it.
     let is_way_in = |e: EdgeId, x: Point| {
         let (a, b) = ends(e);
         let along = b - a;
         let foot = a + along * ((x - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
         let outward = Vector::new(along.y, -along.x).normalize();
-        !boundary.partial[e] || !polygon::contains(&polygon, foot + outward * (foot - x).norm().max(ROOM))
+        !boundary.partial[e] || !is_inside(foot + outward * (foot - x).norm().max(ROOM))
     };
     let depth = |x: Point| {
         let mut near: Vec<(f64, EdgeId)> = q.iter().map(|&e| (segment::distance(x, ends(e).0, ends(e).1), e)).collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         near.iter().find(|&&(_, e)| is_way_in(e, x)).map_or(f64::INFINITY, |(distance, _)| *distance)
     };
-    let (low, high) = polygon::bounds(&polygon);
+    let (low, high) = polygon::bounds(&q.iter().map(|&k| place(k)).collect::<Vec<Point>>());
     let is_boxed = |x: &Point| x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y;
-    let inside = p.iter().map(|&k| place(k)).filter(is_boxed).filter(|&x| polygon::contains(&polygon, x));
-    inside.map(depth).fold(0.0, f64::max)
+    p.iter().map(|&k| place(k)).filter(is_boxed).filter(|&x| is_inside(x)).map(depth).fold(0.0, f64::max)
 }

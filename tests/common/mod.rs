@@ -4,7 +4,7 @@
 pub mod claims;
 pub mod extent;
 pub mod geometry;
-pub mod jittering_pit;
+pub mod pit;
 pub mod saved;
 pub mod shared;
 

@@ -1,4 +1,5 @@
-//! `check` gives the default stiffness of joints on the mesh of a case and on finer ones, unless every law has its own.
+//! `check` gives the default stiffness of joints on the mesh of a case and on finer ones, unless every law has its own:
+//! the same on all meshes, but for joints that dilate.
 
 use std::path::Path;
 
@@ -20,11 +21,13 @@ fn default_stiffness(size: f64, more: &str) -> Option<[f64; 2]> {
 
 #[test]
 fn a_check_gives_the_default_stiffness_of_joints() {
-    // 0.6 (λ + 2μ) per metre, and per mesh size where that is more.
+    // 0.6 (λ + 2μ) per metre; of joints that dilate per mesh size where that is more.
     let fine = 0.6 * 1.2e9;
-    for (size, here) in [(0.5, fine), (1.0, fine), (4.0, fine / 4.0)] {
-        let [on_mesh, on_finer] = default_stiffness(size, "").expect("a default");
-        assert!((on_mesh / here - 1.0).abs() < 1e-12 && (on_finer / fine - 1.0).abs() < 1e-12, "{size}");
+    for (size, dilating) in [(0.5, fine), (1.0, fine), (4.0, fine / 4.0)] {
+        for (more, here) in [("", fine), ("dilation_deg = 5", dilating)] {
+            let [on_mesh, on_finer] = default_stiffness(size, more).expect("a default");
+            assert!((on_mesh / here - 1.0).abs() < 1e-12 && (on_finer / fine - 1.0).abs() < 1e-12, "{size}: {more}");
+        }
     }
     assert_eq!(default_stiffness(4.0, "normal_stiffness = 1e9"), None);
 }

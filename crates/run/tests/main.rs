@@ -7,8 +7,6 @@ mod history;
 mod issue_a_block_on_a_joint_was_in_free_flight;
 mod issue_a_slide_before_the_trials_passed_as_rest;
 mod issue_history_did_not_sum_to_its_residual;
-#[path = "../../../tests/common/jittering_pit.rs"]
-mod jittering_pit;
 #[path = "../../picture/tests/sample.rs"]
 mod sample;
 mod time_left;

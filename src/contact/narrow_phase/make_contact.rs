@@ -196,19 +196,11 @@ impl NarrowPhase<'_> {
         1.0 + (reached.min(0.0) / (self.rule.constants.hardens * self.rule.size)).powi(2)
     }
 
-    /// Covers that carry the position on an edge under a node: at a boundary point those of the point, since round-off
-    /// decides there which of two edges is nearer.
+    /// Covers that carry the position on an edge under a node.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [CoverId; 3] {
-        let (boundary, edge, band) =
-            (self.rule.boundary, candidate.edge, self.rule.constants.corner_tolerance * self.rule.size);
-        if candidate.along.abs() < band {
-            boundary.covers[edge]
-        } else if (candidate.length - candidate.along).abs() < band {
-            boundary.covers[boundary.after(edge)]
-        } else {
-            boundary.edge_covers[edge]
-        }
+        let half = usize::from(2.0 * candidate.along > candidate.length);
+        self.rule.boundary.edge_covers[candidate.edge][half]
     }
 
     /// Weights of an element's covers at a current position, by barycentric coordinates of its stars.

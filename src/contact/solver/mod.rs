@@ -207,7 +207,7 @@ impl OpenClose {
             apply_to_bolt(anchors, bolt.direction * (-bolt.force * options.kick), &mut accumulators);
         }
         let report = self.sweeps(inputs, contacts, others);
-        self.store_forces(contacts, &approach.setting, options.serial);
+        self.store_forces(contacts, approach, options.serial);
         self.supports.store_forces(others.rows);
         report
     }
@@ -307,11 +307,11 @@ impl OpenClose {
     }
 
     /// Stores forces and states in all contacts.
-    fn store_forces(&self, contacts: &mut [VertexEdge], setting: &ContactSetting, serial: bool) {
+    fn store_forces(&self, contacts: &mut [VertexEdge], approach: &Approach, serial: bool) {
         let store = |(contacts, slots): (&mut [VertexEdge], &[u32])| {
             for (contact, &slot) in contacts.iter_mut().zip(slots) {
                 let slot = slot as usize;
-                self.rows[slot / LANES].store_force(slot % LANES, contact, setting);
+                self.rows[slot / LANES].store_force(slot % LANES, contact, approach);
             }
         };
         let slots = &self.sequence.slots;

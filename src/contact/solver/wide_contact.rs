@@ -2,7 +2,7 @@
 
 use enmm_lanes::{Arithmetic, LANES, Values, prefetch};
 
-use crate::contact::{ContactSetting, Limits, SoftSpring, Spring, VertexEdge};
+use crate::contact::{Limits, SoftSpring, Spring, VertexEdge};
 use crate::cover::CoverId;
 use crate::geometry::Vector;
 
@@ -275,10 +275,11 @@ impl WideContact {
 
     /// Leaves force and state in the contact of a lane.
     #[inline(always)]
-    pub fn store_force(&self, lane: usize, contact: &mut VertexEdge, setting: &ContactSetting) {
+    pub fn store_force(&self, lane: usize, contact: &mut VertexEdge, approach: &Approach) {
         let bears = self.open_lanes >> lane & 1 == 0;
         let torn = !bears & (self.compressed >> lane & 1 == 0);
-        contact.end([self.force[0][lane], self.force[1][lane]], bears, torn, setting);
+        let rests = approach.damping.is_none();
+        contact.end([self.force[0][lane], self.force[1][lane]], bears, torn, rests, &approach.setting);
     }
 
     /// Applies the forces so far; returns the larger of each contact's forces (N/m), since a cohesive joint may
