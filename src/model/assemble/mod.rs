@@ -120,7 +120,7 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 }
 
 /// Length (m) of rock that gives joints their default stiffness. Those that dilate have that of the mesh size where it
-/// is longer: its steps do not resolve how stiffer ones lift a block.
+/// is longer: in long steps the heat of friction does not pay for the lift of stiffer springs.
 pub fn stiffness_length(mesh_size: f64, dilates: bool) -> f64 {
     if dilates { mesh_size.max(1.0) } else { 1.0 }
 }
