@@ -38,8 +38,8 @@ pub enum Corner {
 pub struct Boundary {
     /// Covers of the element that carries point `k`.
     pub covers: Vec<[CoverId; 3]>,
-    /// Covers that carry edge `k` up to its middle and beyond: those of its element, on a sliver of the nearer end.
-    pub edge_covers: Vec<[[CoverId; 3]; 2]>,
+    /// Point whose covers carry edge `k` beyond its middle: its start, as before the middle, but on a sliver its end.
+    pub beyond: Vec<EdgeId>,
     /// Edges that lie on a sliver, in their order.
     pub slivers: Vec<(EdgeId, ElementId)>,
     /// Weights of the covers of point `k` there.
@@ -171,7 +171,7 @@ impl Boundary {
 
     /// Covers that may carry positions on an edge.
     pub fn covers_on(&self, edge: EdgeId) -> impl Iterator<Item = CoverId> {
-        self.edge_covers[edge].into_iter().flatten()
+        [edge, self.beyond[edge]].into_iter().flat_map(|point| self.covers[point])
     }
 
     /// Edges of both segments that end at a node, from the node before it to the one after it.
@@ -239,17 +239,17 @@ impl Boundary {
             }
             let on = |k: usize| stations[k % stations.len()].piece.element;
             let own = on(k);
-            let [element, next] = [carrier(on(k + stations.len() - 1), own), carrier(own, on(k + 1))];
+            let element = carrier(on(k + stations.len() - 1), own);
             self.covers.push(covers.element_covers[element]);
+            let next = EdgeId::new(if first + k == last { first } else { first + k + 1 });
             let is_sliver = covers.host[own] != own;
-            let halves = if is_sliver { [element, next] } else { [own; 2] };
-            self.edge_covers.push(halves.map(|element| covers.element_covers[element]));
+            self.beyond.push(if is_sliver { next } else { edge });
             if is_sliver {
                 self.slivers.push((edge, own));
             }
             self.weights.push(covers.weights(element, station.piece.a));
             self.reference.push(station.piece.a);
-            self.next.push(EdgeId::new(if first + k == last { first } else { first + k + 1 }));
+            self.next.push(next);
             self.block.push(block);
             self.side.push(SideId::new(self.sides.ends.len() - 1));
             self.node_before.push(NodeId::new(self.node_count() - 1));

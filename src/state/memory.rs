@@ -151,10 +151,9 @@ fn covers(covers: &Covers) -> usize {
 }
 
 fn boundary(boundary: &Boundary) -> usize {
-    let Boundary { covers, edge_covers, weights, reference, next, block, side, node_before, trace, partial, .. } =
-        boundary;
+    let Boundary { covers, beyond, weights, reference, next, block, side, node_before, trace, partial, .. } = boundary;
     let Boundary { nodes, sides, slivers, block_thickness, .. } = boundary;
-    sum(&[covers, edge_covers, slivers, weights, reference, next, block, side, node_before, trace, partial])
+    sum(&[covers, beyond, slivers, weights, reference, next, block, side, node_before, trace, partial])
         + sum(&[&nodes.point, &nodes.convex, &nodes.edge_before, &nodes.previous, &nodes.next])
         + sum(&[&sides.previous, &sides.next, &sides.ends, block_thickness])
 }

@@ -35,10 +35,10 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
 fn expose(model: &Model, exposed: &mut Vec<bool>) {
     exposed.clear();
     exposed.resize(model.covers.cover_count(), false);
-    let of_contacts = model.boundary.covers.iter().chain(model.boundary.edge_covers.as_flattened());
+    let of_contacts = &model.boundary.covers;
     let of_supports = model.supports.iter().map(|support| &support.covers);
     let of_bolts = model.bolts.iter().flat_map(|bolt| &bolt.covers);
-    for &cover in of_contacts.chain(of_supports).chain(of_bolts).flatten() {
+    for &cover in of_contacts.iter().chain(of_supports).chain(of_bolts).flatten() {
         exposed[cover] = true;
     }
 }

@@ -199,8 +199,8 @@ impl NarrowPhase<'_> {
     /// Covers that carry the position on an edge under a node.
     #[inline(always)]
     fn covers_under(&self, candidate: &ContactCandidate) -> [CoverId; 3] {
-        let half = usize::from(2.0 * candidate.along > candidate.length);
-        self.rule.boundary.edge_covers[candidate.edge][half]
+        let (boundary, edge) = (self.rule.boundary, candidate.edge);
+        boundary.covers[if 2.0 * candidate.along > candidate.length { boundary.beyond[edge] } else { edge }]
     }
 
     /// Weights of an element's covers at a current position, by barycentric coordinates of its stars.
