@@ -81,7 +81,7 @@ fn label(repository: &Repository) -> Result<String, String> {
 /// When the case does not run or a picture is missing.
 pub fn write_pictures(repository: &Repository) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli"])?;
-    let results = repository.target.join("picture-results");
+    let results = repository.target.join("picture-results/main");
     repository::run(repository.command(repository.enmm()).args(["run", MAIN_CASE, "-o"]).arg(&results))?;
     let pictures = repository.root.join("docs/pictures");
     std::fs::create_dir_all(&pictures).map_err(|error| format!("{}: {error}", pictures.display()))?;
