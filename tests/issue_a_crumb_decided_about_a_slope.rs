@@ -90,8 +90,8 @@ fn a_crumb_that_falls_is_named_and_holds_up_no_stage() {
 }
 
 /// A crumb of 0.24 m² in a pit is pushed at 2 mm/s before two reports of three. At the third its neighbours, which it
-/// has shaken, have more energy than the crumb: such reports began the time of rest anew, and a stage ran for all of
-/// 20 s.
+/// has shaken, have more energy than the crumb: such reports set the time of rest back to zero, and a stage ran for
+/// all of 20 s.
 #[test]
 fn a_crumb_that_shakes_its_neighbours_holds_up_no_stage() {
     let loaded = parse_case(PIT, "case.toml", Path::new("")).expect("reads");

@@ -356,8 +356,8 @@ impl VertexEdge {
         [normal_force, shear_force]
     }
 
-    /// Stores the forces (N/m) at the end of an explicit step, as `bear` does, and their change. In a stage that
-    /// `rests` a change that turned back foretells nothing: to go on with it would keep contacts in oscillation.
+    /// Stores the forces (N/m) at the end of an explicit step and their change. In a stage that `rests` a change that
+    /// turned back foretells nothing: to go on with it would keep contacts in oscillation.
     #[inline(always)]
     pub fn end(&mut self, forces: [f64; 2], bears: bool, torn: bool, rests: bool, setting: &ContactSetting) {
         let ContactHistory { normal_force, shear_force, trend, .. } = self.history;

@@ -293,7 +293,7 @@ fn corner_depth(boundary: &Boundary, place: &impl Fn(EdgeId) -> Point, p: &[Edge
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         near.iter().find(|&&(_, e)| is_way_in(e, x)).map_or(f64::INFINITY, |(distance, _)| *distance)
     };
-    let (low, high) = polygon::bounds(&q.iter().map(|&k| place(k)).collect::<Vec<Point>>());
+    let (low, high) = polygon::bounds(&sides.iter().map(|side| side.0).collect::<Vec<Point>>());
     let is_boxed = |x: &Point| x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y;
     p.iter().map(|&k| place(k)).filter(is_boxed).filter(|&x| is_inside(x)).map(depth).fold(0.0, f64::max)
 }
