@@ -60,6 +60,7 @@ mod polygons;
 mod quiet_boundary;
 mod runaway;
 mod sliding_converges;
+mod small_displacements;
 mod softening;
 mod vertex_rule;
 mod water_in_joints;

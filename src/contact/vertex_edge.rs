@@ -75,11 +75,18 @@ pub struct Unloaded {
     pub rest: f64,
 }
 
+impl Unloaded {
+    /// Gap (m) at which the spring is unloaded.
+    pub fn gap(&self) -> f64 {
+        self.rest - self.offset
+    }
+}
+
 impl ContactHistory {
     /// Gap (m) at which the spring is unloaded; infinite where a bonded joint pulls, which no gap ends.
     pub(super) fn unloaded_gap(&self) -> f64 {
         let is_pulled = self.intact && self.normal_force < 0.0;
-        if is_pulled { f64::INFINITY } else { self.unloaded.rest - self.unloaded.offset }
+        if is_pulled { f64::INFINITY } else { self.unloaded.gap() }
     }
 }
 

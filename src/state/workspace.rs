@@ -135,6 +135,8 @@ pub struct SelectionBuffers {
     pub felt_share: f64,
     /// Faces in touch in this step.
     pub faces: FaceBuffers,
+    /// In small displacements the gaps (m) of the contacts before any (Eq. 62a); empty until a step finds them.
+    pub kept_gaps: Option<Vec<f64>>,
 }
 
 /// The face that the contacts of one block with one side are, in a step.

@@ -40,6 +40,9 @@ pub fn search(
     open_close: &mut OpenClose,
     serial: bool,
 ) {
+    if has_kept(selection) {
+        return;
+    }
     let boundary = &model.boundary;
     let size = model.covers.mesh.size;
     if state.neighbours.is_stale(boundary, frames, model.entrance.skin() * size) {
@@ -62,8 +65,11 @@ pub fn entrance(
     selection: &mut SelectionBuffers,
     contacts: &mut Vec<VertexEdge>,
 ) {
-    let SelectionBuffers { near_sides, accepted, cache, penetrating, trace_law, strength, .. } = selection;
-    *strength = state.drive.strength_factor(state.drive.share(step.time));
+    selection.strength = state.drive.strength_factor(state.drive.share(step.time));
+    if has_kept(selection) {
+        return keep(model, state, selection, contacts);
+    }
+    let SelectionBuffers { near_sides, accepted, cache, penetrating, trace_law, .. } = selection;
     near_sides.list(&state.neighbours.pairs);
     cache.index(&state.contacts, model.boundary.node_count());
     penetrating.index(&model.boundary, frames, &state.contacts);
@@ -96,4 +102,26 @@ pub fn entrance(
         serial: step.serial,
     };
     contact::entrance_edges(&narrow, &state.neighbours.pairs, near_sides, accepted, contacts);
+    if let Some(gaps) = &mut selection.kept_gaps {
+        let moved = |contact: &VertexEdge| contact.relative(&model.boundary, &state.displacement)[0];
+        gaps.extend(contacts.iter().map(|contact| contact.gap + contact.history.unloaded.gap() - moved(contact)));
+    }
+}
+
+/// Whether the contacts of an earlier step are those of this one.
+fn has_kept(selection: &SelectionBuffers) -> bool {
+    selection.kept_gaps.as_ref().is_some_and(|gaps| !gaps.is_empty())
+}
+
+/// Contacts of small displacements: normals, lengths and places are those of the step that found them, and gaps follow
+/// the displacements to first order.
+fn keep(model: &Model, state: &State, selection: &SelectionBuffers, contacts: &mut [VertexEdge]) {
+    let gaps = selection.kept_gaps.iter().flatten();
+    for (k, (contact, gap)) in contacts.iter_mut().zip(gaps).enumerate() {
+        let history = state.contacts[k];
+        let moved = contact.relative(&model.boundary, &state.displacement)[0];
+        let past = state.bonds.get(k).map_or(0.0, |bond| bond.damage);
+        let gap = gap + moved - history.unloaded.gap();
+        *contact = VertexEdge { history, gap, past, torn: false, fresh: false, delayed: false, ..*contact };
+    }
 }

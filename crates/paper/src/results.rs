@@ -16,7 +16,8 @@ const CONVENTION: &str = "\
     residual) and of rock that yields is divided when the slope just stands. Weights, water, loads and \
     bolts are not divided: active bolts carry their pretension, passive ones their yield force, and \
     others what the motion of the rock brings to them, up to their yield force. All trials start from \
-    one state of rest. A slope that slides and is caught by other blocks does not count as stable.";
+    one state of rest. A slope that slides and is caught by other blocks does not count as stable, but one \
+    that comes to rest in small displacements as well does.";
 
 /// Stages, histories, and bolts at the end of a run.
 pub fn run_chapter(records: &Records) -> String {

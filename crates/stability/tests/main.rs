@@ -11,5 +11,6 @@ mod hoek_brown_slope;
 mod issue_a_fault_a_millimetre_short_held_a_slope;
 mod kinematics;
 mod limit_analysis;
+mod slips_before_it_holds;
 mod soil_slope;
 mod tutorials;

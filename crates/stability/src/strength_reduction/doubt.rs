@@ -58,7 +58,9 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     let trials = &reduction.trials;
     let mut doubts = Vec::new();
     doubts.extend(not_monotone(trials));
-    doubts.extend(caught(trials));
+    doubts.extend(slid(trials, |t| t.verdict == Verdict::Caught, "were caught: that does not count as stable"));
+    let held = "then held, in small displacements as well: that counts as stable";
+    doubts.extend(slid(trials, |t| t.reason == Reason::Hardening, held));
     doubts.extend(reduction.doubt());
     doubts.extend(undecided(trials));
     doubts.extend(loose(reduction));
@@ -109,18 +111,17 @@ fn undecided(trials: &[Trial]) -> Option<String> {
     (!told.is_empty()).then(|| format!("judged by their trend when their time was over: {trials} {}", told.join(", ")))
 }
 
-/// Blocks that slid and stopped.
-fn caught(trials: &[Trial]) -> Option<String> {
-    let caught: Vec<&Trial> = trials.iter().filter(|t| t.verdict == Verdict::Caught).collect();
-    let (first, last) = (caught.first()?, caught.last()?);
-    let far = caught.iter().map(|t| t.displacement).fold(0.0, f64::max);
-    let range = if caught.len() == 1 {
+/// Trials in which blocks slid and stopped, and how that counts.
+fn slid(trials: &[Trial], counts: impl Fn(&&Trial) -> bool, fate: &str) -> Option<String> {
+    let slid: Vec<&Trial> = trials.iter().filter(counts).collect();
+    let (first, last) = (slid.first()?, slid.last()?);
+    let far = slid.iter().map(|t| t.displacement).fold(0.0, f64::max);
+    let range = if slid.len() == 1 {
         format!("F = {:.4}", first.factor)
     } else {
         format!("F = {:.4} to {:.4}", first.factor, last.factor)
     };
     Some(format!(
-        "at {range} joints slipped or rock flowed by up to {far:.3} m, farther than elasticity explains, and were \
-         caught: that does not count as stable"
+        "at {range} joints slipped or rock flowed by up to {far:.3} m, farther than elasticity explains, and {fate}"
     ))
 }

@@ -27,6 +27,8 @@ impl Verdict {
 pub enum Reason {
     /// Speeds, energy and growth of displacements have died.
     Rest,
+    /// Joints slipped farther than elasticity explains, and came to rest; so they do in small displacements.
+    Hardening,
     /// A block is beyond the limit displacement, and the kinetic energy grows.
     Runaway,
     /// Speed grows in a straight line, beyond what the rock's elasticity can give way.
@@ -40,6 +42,7 @@ impl Reason {
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
+            Self::Hardening => "hardening",
             Self::Runaway => "runaway",
             Self::Acceleration => "acceleration",
             Self::Trend => "trend",

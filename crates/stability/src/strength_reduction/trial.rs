@@ -134,10 +134,35 @@ impl Base {
         few
     }
 
-    /// Makes one trial; returns the model at its end as well.
+    /// Makes one trial; returns the model at its end as well. A slope that is caught is asked once more, in small
+    /// displacements: where it comes to rest without new geometry as well, it was not its way that held it.
     pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
+        let (mut trial, simulation) = self.follow(factor, self.simulation.clone(), interrupt)?;
+        if trial.verdict == Verdict::Caught && !self.yields {
+            let mut small = self.simulation.clone();
+            small.assume_small_displacements();
+            let again = match self.follow(factor, small, interrupt) {
+                Ok((again, _)) => again,
+                Err(Stop::Failed(_)) => return Ok((trial, simulation)),
+                Err(stop) => return Err(stop),
+            };
+            (trial.steps, trial.wall) = (trial.steps + again.steps, trial.wall + again.wall);
+            if again.verdict != Verdict::Unstable {
+                (trial.verdict, trial.reason) = (Verdict::Stable, judge::Reason::Hardening);
+                trial.failing.clear();
+            }
+        }
+        Ok((trial, simulation))
+    }
+
+    /// Follows the motion of a model at rest while its strength falls.
+    fn follow(
+        &self,
+        factor: f64,
+        mut simulation: Simulation,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<(Trial, Simulation), Stop> {
         let clock = Instant::now();
-        let mut simulation = self.simulation.clone();
         let fall = Fall { start: simulation.time(), time: self.scales.ramp, end: 1.0 / factor };
         simulation.drive().arrive();
         let mut samples = Vec::new();
