@@ -27,7 +27,7 @@ impl Verdict {
 pub enum Reason {
     /// Speeds, energy and growth of displacements have died.
     Rest,
-    /// Joints slipped farther than elasticity explains, and came to rest; so they do in small displacements.
+    /// Joints slipped farther than elasticity explains and came to rest, and do so in small displacements as well.
     Hardening,
     /// A block is beyond the limit displacement, and the kinetic energy grows.
     Runaway,

@@ -79,7 +79,7 @@ pub struct Trial {
     pub failing: Vec<FailingBlock>,
     /// Blocks that have slid off or fallen and are too few to decide: less than a thousandth of the free mass together.
     pub loose: Vec<FailingBlock>,
-    /// Internal steps.
+    /// Internal steps, those of a second trial in small displacements included.
     pub steps: u64,
     /// Energy that the ledger does not explain over its largest term.
     pub ledger_residual: f64,

@@ -134,8 +134,8 @@ impl Base {
         few
     }
 
-    /// Makes one trial; returns the model at its end as well. A slope that is caught is asked once more, in small
-    /// displacements: where it comes to rest without new geometry as well, it was not its way that held it.
+    /// Makes one trial; returns the model at its end as well. A slope that is caught is tried again in small
+    /// displacements: if it comes to rest there, too, no change of its geometry holds it.
     pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
         let (mut trial, simulation) = self.follow(factor, self.simulation.clone(), interrupt)?;
         if trial.verdict == Verdict::Caught && !self.yields {
@@ -147,7 +147,7 @@ impl Base {
                 Err(stop) => return Err(stop),
             };
             (trial.steps, trial.wall) = (trial.steps + again.steps, trial.wall + again.wall);
-            if again.verdict != Verdict::Unstable {
+            if again.reason == judge::Reason::Rest {
                 (trial.verdict, trial.reason) = (Verdict::Stable, judge::Reason::Hardening);
                 trial.failing.clear();
             }
