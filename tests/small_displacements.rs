@@ -2,10 +2,10 @@
 //! places, and only their gaps follow the motion. So a block slides on by the formula where its way would bring it
 //! against a wall, one that stays settles as it does in full, and a restored state ends it.
 
+use crate::common::claims::{advance, block_at};
 use crate::common::{run_stage, simulation};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
-use enmm::model::tables::BlockId;
 
 /// A block of 3 m by 2 m on a plane under 30° (gravity is turned, not the plane), and a wall 20 mm before it.
 const BLOCK: &str = r#"
@@ -52,17 +52,13 @@ fn on_its_way() -> Simulation {
 
 /// Displacement of the block (m).
 fn displacement(simulation: &Simulation) -> Vector {
-    let fixed = &simulation.workspace().mass_matrix.fixed;
-    let free = fixed.iter().position(|fixed| !fixed).expect("a free block");
-    simulation.motion_of(BlockId::new(free)).displacement
+    simulation.motion_of(block_at(simulation, [1.5, 1.0])).displacement
 }
 
 /// Way (m) of the block in a second.
 fn way(simulation: &mut Simulation) -> f64 {
     let before = displacement(simulation).x;
-    for _ in 0..simulation.steps_in(1.0) {
-        simulation.advance(false).expect("a step");
-    }
+    advance(simulation, simulation.steps_in(1.0));
     displacement(simulation).x - before
 }
 

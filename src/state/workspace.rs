@@ -135,7 +135,8 @@ pub struct SelectionBuffers {
     pub felt_share: f64,
     /// Faces in touch in this step.
     pub faces: FaceBuffers,
-    /// In small displacements the gaps (m) of the contacts before any (Eq. 62a); empty until a step finds them.
+    /// Gaps (m) that contacts of small displacements had without any displacement (Eq. 62a); empty until a step finds
+    /// them.
     pub kept_gaps: Option<Vec<f64>>,
 }
 

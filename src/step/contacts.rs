@@ -103,8 +103,7 @@ pub fn entrance(
     };
     contact::entrance_edges(&narrow, &state.neighbours.pairs, near_sides, accepted, contacts);
     if let Some(gaps) = &mut selection.kept_gaps {
-        let moved = |contact: &VertexEdge| contact.relative(&model.boundary, &state.displacement)[0];
-        gaps.extend(contacts.iter().map(|contact| contact.gap + contact.history.unloaded.gap() - moved(contact)));
+        gaps.extend(contacts.iter().map(|contact| -contact.penetration() - opened(model, state, contact)));
     }
 }
 
@@ -119,9 +118,13 @@ fn keep(model: &Model, state: &State, selection: &SelectionBuffers, contacts: &m
     let gaps = selection.kept_gaps.iter().flatten();
     for (k, (contact, gap)) in contacts.iter_mut().zip(gaps).enumerate() {
         let history = state.contacts[k];
-        let moved = contact.relative(&model.boundary, &state.displacement)[0];
         let past = state.bonds.get(k).map_or(0.0, |bond| bond.damage);
-        let gap = gap + moved - history.unloaded.gap();
+        let gap = gap + opened(model, state, contact) - history.unloaded.gap();
         *contact = VertexEdge { history, gap, past, torn: false, fresh: false, delayed: false, ..*contact };
     }
+}
+
+/// How far (m) all displacements so far have opened a contact.
+fn opened(model: &Model, state: &State, contact: &VertexEdge) -> f64 {
+    contact.relative(&model.boundary, &state.displacement)[0]
 }

@@ -1,6 +1,6 @@
 //! Claim: joints that must slip before they hold are strength. A slab presses on a toe of soft rock, which yields by
-//! centimetres before it holds; a second trial in small displacements tells that from blocks that others caught, and
-//! the factor is that of limit analysis, which knows no elasticity.
+//! centimetres before it holds; a second trial in small displacements shows that no other block caught it, and the
+//! factor is that of limit analysis, which knows no elasticity.
 
 use std::path::Path;
 

@@ -138,19 +138,20 @@ impl Base {
     /// displacements: if it comes to rest there, too, no change of its geometry holds it.
     pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
         let (mut trial, simulation) = self.follow(factor, self.simulation.clone(), interrupt)?;
-        if trial.verdict == Verdict::Caught && !self.yields {
-            let mut small = self.simulation.clone();
-            small.assume_small_displacements();
-            let again = match self.follow(factor, small, interrupt) {
-                Ok((again, _)) => again,
-                Err(Stop::Failed(_)) => return Ok((trial, simulation)),
-                Err(stop) => return Err(stop),
-            };
-            (trial.steps, trial.wall) = (trial.steps + again.steps, trial.wall + again.wall);
-            if again.reason == judge::Reason::Rest {
-                (trial.verdict, trial.reason) = (Verdict::Stable, judge::Reason::Hardening);
-                trial.failing.clear();
-            }
+        if trial.verdict != Verdict::Caught || self.yields {
+            return Ok((trial, simulation));
+        }
+        let mut small = self.simulation.clone();
+        small.assume_small_displacements();
+        let again = match self.follow(factor, small, interrupt) {
+            Ok((again, _)) => again,
+            Err(Stop::Failed(_)) => return Ok((trial, simulation)),
+            Err(stop) => return Err(stop),
+        };
+        (trial.steps, trial.wall) = (trial.steps + again.steps, trial.wall + again.wall);
+        if again.reason == judge::Reason::Rest {
+            (trial.verdict, trial.reason) = (Verdict::Stable, judge::Reason::Hardening);
+            trial.failing.clear();
         }
         Ok((trial, simulation))
     }
