@@ -126,17 +126,19 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
 
 #[test]
 fn the_solver_of_steps_agrees_with_the_method_written_out() {
-    let mut slope = simulation(SLOPE);
-    let mut seen = [0; 3];
-    for (steps, stage) in [(1, "load comes"), (400, "rests"), (1, "loses its strength"), (300, "fails")] {
-        if stage == "loses its strength" {
-            slope.next_stage().unwrap_or_else(|e| panic!("{e}"));
+    for law in ["friction_deg = 45", "friction_deg = 45\ndilation_deg = 15\ndilation_slip = 1.0"] {
+        let mut slope = simulation(&SLOPE.replace("friction_deg = 45", law));
+        let mut seen = [0; 3];
+        for (steps, stage) in [(1, "load comes"), (400, "rests"), (1, "loses its strength"), (300, "fails")] {
+            if stage == "loses its strength" {
+                slope.next_stage().unwrap_or_else(|e| panic!("{e}"));
+            }
+            for _ in 0..steps {
+                slope.advance(false).unwrap_or_else(|e| panic!("{law}, {stage}: {e}"));
+            }
+            let states = compare(&slope);
+            seen = [0, 1, 2].map(|k| seen[k] + states[k]);
         }
-        for _ in 0..steps {
-            slope.advance(false).unwrap_or_else(|e| panic!("{stage}: {e}"));
-        }
-        let states = compare(&slope);
-        seen = [0, 1, 2].map(|k| seen[k] + states[k]);
+        assert!(seen.iter().all(|&count| count > 20), "{law}: open, slip and lock: {seen:?}");
     }
-    assert!(seen.iter().all(|&count| count > 20), "open, slip and lock: {seen:?}");
 }

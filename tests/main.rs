@@ -46,6 +46,7 @@ mod issue_short_steps_let_blocks_slide_on;
 mod issue_states_that_cannot_be_panicked;
 mod issue_touching_islands_were_welded;
 mod issue_unbalanced_ratio_was_infinite;
+mod joint_dilation;
 mod joint_distributions;
 mod joint_sets;
 mod joint_stiffness;

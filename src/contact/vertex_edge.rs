@@ -268,12 +268,11 @@ impl VertexEdge {
         Closure { stiffness: self.stiffness[0], most: setting.laws[self.law].closure_max }
     }
 
-    /// The load that the asperities lift after a step that opens the contact by `opened` (m).
+    /// The load that the asperities have lifted after a step that opens the contact by `opened` (m).
     #[inline(always)]
     pub fn lift_load(&self, opened: f64) -> LiftLoad {
         let normal = self.history.normal_force.max(0.0);
-        let opened = if normal > 0.0 { opened.max(0.0) } else { 0.0 };
-        LiftLoad { normal, spring: self.stiffness[0], opened }
+        LiftLoad { normal, spring: self.stiffness[0], closed: [-self.gap, -self.gap - opened] }
     }
 
     /// What the contact loses because the rock carries no more than its strength over the length (Eq. 87).

@@ -951,8 +951,7 @@ pub struct Solver {
     pub dt_max: Option<f64>,
     /// Share of the stability limit that is used.
     pub dt_safety: f64,
-    /// Default stiffness of joints: normal_stiffness = this·(λ+2μ) over 1 m; of joints that dilate over the mesh
-    /// size where that is more.
+    /// Default stiffness of joints: normal_stiffness = this·(λ+2μ) over 1 m.
     pub contact_stiffness: f64,
     /// Shear over normal contact stiffness.
     pub shear_ratio: f64,

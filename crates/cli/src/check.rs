@@ -101,11 +101,6 @@ fn rock_mass(mass: &RockMass) -> String {
 }
 
 /// The default normal stiffness of joints, and that of finer meshes.
-fn joint_stiffness([here, fine]: [f64; 2]) -> String {
-    let finer = if here < fine { format!(" on this mesh, {fine:.3e} on meshes up to 1 m") } else { String::new() };
-    format!("{here:.3e} by default{finer}")
-}
-
 fn json_line(found: &Check) -> String {
     serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }
@@ -131,7 +126,10 @@ fn table(found: &Check) -> String {
         ("initial contacts", found.initial_contacts.to_string()),
         ("critical dt (s)", format!("{:.4e}", found.critical_dt)),
         ("friction delay (ms)", format!("{:.2} in dynamic stages", 1e3 * found.friction_delay)),
-        ("joint stiffness (Pa/m)", found.default_stiffness.map_or("given".to_owned(), joint_stiffness)),
+        (
+            "joint stiffness (Pa/m)",
+            found.default_stiffness.map_or("given".to_owned(), |k| format!("{k:.3e} by default")),
+        ),
         ("small covers treated", found.small_covers_treated.to_string()),
         ("tiny blocks", found.tiny_blocks.to_string()),
         ("merged vertices", found.merged_vertices.to_string()),

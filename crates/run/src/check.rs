@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use enmm::geometry::Point;
-use enmm::model::assemble::{ignored_traces, stiffness_length};
+use enmm::model::assemble::ignored_traces;
 use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
 
@@ -46,9 +46,8 @@ pub struct Check {
     pub critical_dt: f64,
     /// Delay of friction in a dynamic stage that begins with the untouched model (s).
     pub friction_delay: f64,
-    /// Normal stiffness (Pa/m) of joints whose law gives none, the least of all such laws, on this mesh and on meshes
-    /// up to one metre; none where every law gives one.
-    pub default_stiffness: Option<[f64; 2]>,
+    /// Normal stiffness (Pa/m) of joints whose law gives none, on every mesh; none where every law gives one.
+    pub default_stiffness: Option<f64>,
     /// Covers with less than a thousandth of a full cover's mass, which only equal thirds keep from ruling the step.
     pub small_covers_treated: usize,
     /// Blocks with less than a thousandth of a lattice triangle's area.
@@ -114,12 +113,9 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
     }
 }
 
-fn default_stiffness(simulation: &Simulation) -> Option<[f64; 2]> {
-    let (case, model) = (simulation.case(), simulation.model());
-    let laws = case.joint_laws.values().zip(&model.laws).filter(|(law, _)| law.normal_stiffness.is_none());
-    let law = laws.map(|(_, law)| law).min_by(|a, b| a.normal_stiffness.total_cmp(&b.normal_stiffness))?;
-    let length = stiffness_length(model.covers.mesh.size, law.dilation > 0.0);
-    Some([law.normal_stiffness, law.normal_stiffness * length])
+fn default_stiffness(simulation: &Simulation) -> Option<f64> {
+    let mut laws = simulation.case().joint_laws.values().zip(&simulation.model().laws);
+    laws.find(|(law, _)| law.normal_stiffness.is_none()).map(|(_, law)| law.normal_stiffness)
 }
 
 /// A part of the memory that a model needs while it runs.

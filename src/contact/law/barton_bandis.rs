@@ -47,6 +47,13 @@ impl Closure {
         force / (self.stiffness + force.max(0.0) / self.most)
     }
 
+    /// Force (N/m) from what the spring of a step answers: the force itself, or, of a curve, the closure b (m) that
+    /// determines it (Eq. 35).
+    #[inline(always)]
+    pub fn force(&self, answer: f64, c: f64) -> f64 {
+        if self.is_curved() { self.solve(answer, c) } else { answer }
+    }
+
     /// Force (N/m) after a step in which it reduces the closure that it meets: solves v(N) + c·N = b, where b (m) is
     /// the closure that would be there without the force and c (m²/N) what a unit of force takes from it (Eq. 35).
     pub fn solve(&self, b: f64, c: f64) -> f64 {

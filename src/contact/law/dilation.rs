@@ -2,16 +2,15 @@
 
 use super::JointLaw;
 
-/// Load on a contact that is lifted. The force is that of the end of the step. A spring that opens in the step held
-/// more before, and the step has lost that energy: lifting as far again takes the work of the force alone.
+/// A contact at the end of a step that it slipped in.
 #[derive(Debug, Clone, Copy)]
 pub struct LiftLoad {
     /// Normal force (N/m).
     pub normal: f64,
     /// Normal spring (N/m per metre).
     pub spring: f64,
-    /// How far (m) the step opens the contact while it stays closed.
-    pub opened: f64,
+    /// Closure (m) at the start of the step, and at its end without lift.
+    pub closed: [f64; 2],
 }
 
 /// Lift of a joint by a slip.
@@ -26,44 +25,49 @@ pub struct Lifted {
 }
 
 impl JointLaw {
-    /// How a joint that slips by `slip` (m) climbs its asperities, from a way (m) up or down along them: no higher than
-    /// the heat of friction (J/m) can lift it.
+    /// How far (m) a slip (m) lifts the joint from a way (m) up or down its asperities; negative on the way down.
+    #[inline(always)]
+    pub fn rise(&self, way: f64, slip: f64) -> f64 {
+        (self.way_after(way, slip).abs() - way.abs()) * self.dilation
+    }
+
+    #[inline(always)]
+    fn way_after(&self, way: f64, slip: f64) -> f64 {
+        (way + slip).clamp(-self.dilation_slip, self.dilation_slip)
+    }
+
+    /// How a joint that slips by `slip` (m) climbs its asperities from a way (m) up or down along them: no higher than
+    /// the heat of friction (J/m) and what the spring gave up in the step can lift it.
     #[inline(always)]
     pub fn dilate(&self, way: f64, slip: f64, heat: f64, load: &LiftLoad) -> Lifted {
-        let after = (way + slip).clamp(-self.dilation_slip, self.dilation_slip);
+        let after = self.way_after(way, slip);
         if self.dilation == 0.0 {
             return Lifted { way: after, raised: 0.0, work: 0.0 };
         }
-        let rise = |after: f64| (after.abs() - way.abs()) * self.dilation;
-        let highest = load.highest(heat);
-        let share = if rise(after) > highest { highest / rise(after) } else { 1.0 };
-        let way_after = way + (after - way) * share;
-        let raised = rise(way_after);
-        Lifted { way: way_after, raised, work: load.work(raised) }
+        let rise = self.rise(way, slip);
+        if rise <= 0.0 {
+            return Lifted { way: after, raised: rise, work: load.returned(rise) };
+        }
+        let raised = rise.min(load.highest(heat));
+        Lifted { way: way + (after - way) * (raised / rise), raised, work: (load.normal * raised).min(heat) }
     }
 }
 
 impl LiftLoad {
-    /// How high (m) the heat of friction (J/m) can lift it.
+    /// How high (m) it can be lifted: its spring then stores no more than at the start of the step, and what the blocks
+    /// and the heat of friction (J/m) put in.
     #[inline(always)]
     fn highest(&self, heat: f64) -> f64 {
-        let Self { normal, spring, opened } = *self;
-        if heat < normal * opened {
-            return heat / normal;
-        }
-        let twice = 2.0 * heat + spring * opened * opened;
-        let root = (normal * normal + spring * twice).sqrt();
-        if twice > 0.0 { twice / (normal + root) } else { 0.0 }
+        let [before, after] = self.closed;
+        let put_in = heat + self.normal * (after - before);
+        let square = before.max(0.0).powi(2) + 2.0 * put_in / self.spring;
+        (square.max(0.0).sqrt() - after).max(0.0)
     }
 
-    /// Work (J/m) of lifting it by `raised` (m). One that comes down gives no more than its spring holds.
+    /// Work (J/m) of lowering it by −`raised` (m), which is negative: no more comes back than its spring holds.
     #[inline(always)]
-    fn work(&self, raised: f64) -> f64 {
-        let Self { normal, spring, opened } = *self;
-        if raised > 0.0 {
-            return raised * normal + 0.5 * spring * (raised * raised - opened * opened).max(0.0);
-        }
-        let raised = raised.max(-normal / spring);
-        raised * (normal + 0.5 * spring * raised)
+    fn returned(&self, raised: f64) -> f64 {
+        let raised = raised.max(-self.normal / self.spring);
+        raised * (self.normal + 0.5 * self.spring * raised)
     }
 }

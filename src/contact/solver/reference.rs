@@ -7,7 +7,7 @@
 
 use enmm_lanes::First;
 
-use crate::contact::{Bond, Closure, ContactSetting, Pair, SoftSpring, Spring, VertexEdge};
+use crate::contact::{Bond, Closure, ContactSetting, Pair, Slide, SoftSpring, Spring, VertexEdge};
 use crate::cover;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
@@ -29,6 +29,10 @@ struct Equation {
     closure: Closure,
     /// Bond that softens.
     bond: Option<Bond>,
+    /// Velocity (m/s) along the edge without contact forces, what a shear force adds to it (m/s per N/m), and step (s).
+    speed: f64,
+    eased: f64,
+    dt: f64,
 }
 
 impl Equation {
@@ -61,7 +65,9 @@ impl Equation {
             normal.response(-contact.stiffness[0] * contact.gap)
         };
         let answers = [closing, spring(1).response(contact.shear_stored())];
-        Self { pair, arms, z: [0, 1].map(|k| pair.z(k, masses)), answers, closure, bond }
+        let z = [0, 1].map(|k| pair.z(k, masses));
+        let (speed, eased, dt) = (speed[1], compliance[1] * options.kick, options.dt);
+        Self { pair, arms, z, answers, closure, bond, speed, eased, dt }
     }
 }
 
@@ -164,7 +170,7 @@ fn solve_contact(
 ) -> f64 {
     let velocity = impulses.velocity(0, equation) - impulses.velocity(1, equation);
     let before = forces(contact);
-    let [normal, shear] = asked(contact, equation, velocity);
+    let [normal, shear] = asked(contact, equation, setting, velocity);
     contact.decide(normal, shear, setting);
     let after = forces(contact);
     let change = [after[0] - before[0], after[1] - before[1]];
@@ -177,7 +183,7 @@ fn solve_contact(
 ///
 /// Of each spring [`SoftSpring`] holds what no sweep changes: `rest` = −k(g + θΔt·u*), or T_hist − kθΔt·u* along the
 /// edge, u* being the velocity without contact forces; `rate` = kθΔt; `kept` = kθΔt·W times the kick.
-fn asked(contact: &VertexEdge, equation: &Equation, u: Vector) -> [f64; 2] {
+fn asked(contact: &VertexEdge, equation: &Equation, setting: &ContactSetting, u: Vector) -> [f64; 2] {
     let along = [u.dot(&contact.normal), u.dot(&contact.tangent())];
     let force = forces(contact);
     let [normal, shear] = [0, 1].map(|axis| {
@@ -194,8 +200,21 @@ fn asked(contact: &VertexEdge, equation: &Equation, u: Vector) -> [f64; 2] {
     }
     // Of a joint that closes on a curve the sum above is the closure from which the force follows (Eq. 35).
     let curve = equation.closure;
-    let normal = if curve.is_curved() { curve.solve(normal, kept_normal) } else { normal / (1.0 + kept_normal) };
-    [normal, shear / (1.0 + kept_shear)]
+    let share = if curve.is_curved() { 1.0 } else { 1.0 / (1.0 + kept_normal) };
+    let stick = shear / (1.0 + kept_shear);
+    let slide = Slide {
+        normal: normal * share,
+        kept: kept_normal,
+        rate: equation.answers[0].rate * share,
+        stick,
+        shear: force[1],
+        speed: equation.speed + along[1],
+        eased: equation.eased,
+        dt: equation.dt,
+    };
+    let dilates = setting.laws[contact.law].dilation > 0.0;
+    let answer = if dilates { contact.climb(&slide, setting) } else { slide.normal };
+    [curve.force(answer, kept_normal), stick]
 }
 
 /// Largest change of a force over the force of its contact, or over a share of the largest one of all (Eq. 16).

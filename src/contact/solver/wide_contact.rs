@@ -2,7 +2,7 @@
 
 use enmm_lanes::{Arithmetic, LANES, Values, prefetch};
 
-use crate::contact::{Limits, SoftSpring, Spring, VertexEdge};
+use crate::contact::{Limits, Slide, SoftSpring, Spring, VertexEdge};
 use crate::cover::CoverId;
 use crate::geometry::Vector;
 
@@ -38,7 +38,7 @@ pub struct WideContact {
     /// Bit masks of lanes: open contacts, and contacts in compression.
     open_lanes: u8,
     compressed: u8,
-    /// Whether spring or strength of one of them follow a curve.
+    /// Whether spring or strength of one of them follow a curve, or its joint dilates.
     curved: bool,
 }
 
@@ -203,7 +203,8 @@ impl WideContact {
             (false, true) => (-tension).next_down(),
             (false, false) => 0.0,
         };
-        self.curved |= limits.is_curved() | (start.closing[0] != 0);
+        let dilates = setting.laws[contact.law].dilation > 0.0;
+        self.curved |= limits.is_curved() | (start.closing[0] != 0) | dilates;
     }
 
     /// Leaves a lane without contact.
@@ -323,11 +324,12 @@ impl WideContact {
         let zero = lanes.splat(0.0);
         let mut limit = lanes.max(normal * lanes.load(&self.friction) + lanes.load(&self.cohesion), zero);
         if self.curved {
-            let (mut asked, mut limits) = ([[0.0; LANES]; 2], [0.0; LANES]);
+            let (mut asked, mut limits, mut speed) = ([[0.0; LANES]; 2], [0.0; LANES], [0.0; LANES]);
             lanes.store(normal, &mut asked[0]);
             lanes.store(shear, &mut asked[1]);
             lanes.store(limit, &mut limits);
-            self.follow(from, &mut asked, &mut limits);
+            lanes.store(velocity[1], &mut speed);
+            self.follow(from, &mut asked, &speed, &mut limits);
             (normal, limit) = (lanes.load(&asked[0]), lanes.load(&limits));
         }
         // No branch depends on which contacts are closed, slip or change: it would be known too late.
@@ -359,10 +361,11 @@ impl WideContact {
         self.points[0].push(lanes, at, impulse, &before[0], &mut sides[0], cover_impulse);
     }
 
-    /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve.
+    /// Normal forces and shear limits (N/m) of joints whose spring or strength follows a curve, or that dilate, at the
+    /// velocities (m/s) along the edges by all impulses so far.
     #[cold]
     #[inline(never)]
-    fn follow(&self, from: &ContactView, [asked, shear]: &mut [F64x8; 2], limits: &mut F64x8) {
+    fn follow(&self, from: &ContactView, [asked, shear]: &mut [F64x8; 2], speed: &F64x8, limits: &mut F64x8) {
         for (lane, &contact) in self.of(from.order).iter().enumerate() {
             let (contact, setting) = (&from.contacts[contact as usize], &from.approach.setting);
             if let Some(bond) = contact.bond(setting) {
@@ -375,12 +378,40 @@ impl WideContact {
                 continue;
             }
             let (closure, law) = (contact.closure(setting), contact.limits(setting));
-            if closure.is_curved() {
-                asked[lane] = closure.solve(asked[lane], self.answers[0].kept[lane]);
+            let kept = self.answers[0].kept[lane];
+            let dilates = setting.laws[contact.law].dilation > 0.0;
+            let slips = |limit: f64| shear[lane].abs().max(contact.shear_stored().abs()) > limit;
+            if dilates && slips(law.shear(closure.force(asked[lane], kept), contact.length)) {
+                asked[lane] =
+                    contact.climb(&self.slide(lane, contact, from, [asked[lane], shear[lane]], speed), setting);
             }
-            if closure.is_curved() || law.is_curved() {
+            asked[lane] = closure.force(asked[lane], kept);
+            if closure.is_curved() || law.is_curved() || dilates {
                 limits[lane] = law.shear(asked[lane], contact.length);
             }
+        }
+    }
+
+    /// The contact of a lane, which climbs while it slips.
+    fn slide(
+        &self,
+        lane: usize,
+        contact: &VertexEdge,
+        from: &ContactView,
+        [normal, stick]: [f64; 2],
+        speed: &F64x8,
+    ) -> Slide {
+        let [spring, shear] = &self.answers;
+        let fixed = contact.relative(from.approach.setting.boundary, from.approach.predicted)[1];
+        Slide {
+            normal,
+            kept: spring.kept[lane],
+            rate: spring.rate[lane],
+            stick,
+            shear: self.force[1][lane],
+            speed: fixed + speed[lane],
+            eased: shear.kept[lane] / shear.rate[lane],
+            dt: from.options.dt,
         }
     }
 }

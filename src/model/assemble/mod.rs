@@ -119,12 +119,6 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
     Ok(cover::cut(mesh, arrangement).1)
 }
 
-/// Length (m) of rock that gives joints their default stiffness. Those that dilate have that of the mesh size where it
-/// is longer: in long steps the heat of friction does not pay for the lift of stiffer springs.
-pub fn stiffness_length(mesh_size: f64, dilates: bool) -> f64 {
-    if dilates { mesh_size.max(1.0) } else { 1.0 }
-}
-
 /// The fixed part of the model, and the warnings about its bolts.
 fn model(
     case: &Case,
@@ -153,7 +147,7 @@ fn model(
         strengths: case.rocks.values().map(rock::yielding).collect(),
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
-        laws: joint_laws(case, joints, stiffness_over(1.0, case, &rocks), covers.mesh.size)?,
+        laws: joint_laws(case, joints, stiffness_over(1.0, case, &rocks))?,
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         fixities,
@@ -247,11 +241,10 @@ fn two_digits_below(value: f64) -> f64 {
 }
 
 /// The laws of the case by name; a continuum, which needs none, has one without strength.
-fn joint_laws(case: &Case, joints: &Joints, stiffness: f64, mesh_size: f64) -> Result<Vec<JointLaw>, Invalid> {
+fn joint_laws(case: &Case, joints: &Joints, stiffness: f64) -> Result<Vec<JointLaw>, Invalid> {
     let without = case.joint_laws.is_empty().then(|| case::JointLaw::frictional(0.0));
     let laws = case.joint_laws.values().chain(&without);
-    let own = |law: &case::JointLaw| stiffness / stiffness_length(mesh_size, law.dilation_deg > 0.0);
-    let mut laws: Vec<JointLaw> = laws.map(|law| joint_law(law, own(law), case.solver.shear_ratio)).collect();
+    let mut laws: Vec<JointLaw> = laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect();
     bonds::of_bridges(case, joints, &mut laws)?;
     Ok(laws)
 }
