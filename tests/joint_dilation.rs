@@ -1,5 +1,4 @@
-//! Claim: a joint that dilates lifts its block by slip times tan ψ, and no faster than friction pays for, on joints of any
-//! stiffness (Eq. 21).
+//! Claim: a joint that dilates lifts its block by slip times tan ψ, whatever its stiffness and the mesh (Eq. 21).
 
 use crate::common::parts::{dynamic, rock};
 use crate::common::simulation;
