@@ -4,13 +4,13 @@ use super::{ContactSetting, VertexEdge};
 
 /// Trials of a lift at most. The second is exact where spring and friction follow straight lines.
 const TRIALS: usize = 8;
-/// Share of the first trial to which the lift is found.
+/// Rounding of a lift, as a share of the first trial.
 const EXACT: f64 = 1e-12;
 
 /// A contact in a sweep before its lift.
 #[derive(Debug, Clone, Copy)]
 pub struct Slide {
-    /// What the normal spring answers: force (N/m), or the closure (m) that determines it.
+    /// Answer of the normal spring: force (N/m), or the closure (m) that determines it.
     pub normal: f64,
     /// How the answer grows with its force, of a spring that follows a curve (m²/N).
     pub kept: f64,
@@ -29,7 +29,7 @@ pub struct Slide {
 }
 
 impl VertexEdge {
-    /// What the normal spring answers when the contact climbs in the step: one that goes down does so after it.
+    /// Answer of the normal spring when the contact climbs in the step: one that goes down does so after it.
     pub fn climb(&self, slide: &Slide, setting: &ContactSetting) -> f64 {
         let (law, limits, closure) = (&setting.laws[self.law], self.limits(setting), self.closure(setting));
         let lifted = |lift: f64| slide.normal + slide.rate / slide.dt * lift;
@@ -50,8 +50,7 @@ impl VertexEdge {
     fn slip(&self, slide: &Slide, limit: f64) -> f64 {
         let shear = slide.stick.clamp(-limit, limit);
         let moved = slide.dt * (slide.speed + slide.eased * (shear - slide.shear));
-        let trial = self.shear_stored() - self.stiffness[1] * moved;
-        (trial.clamp(-limit, limit) - trial) / self.stiffness[1]
+        self.clamped(self.shear_stored() - self.stiffness[1] * moved, limit).1
     }
 }
 

@@ -268,6 +268,12 @@ impl VertexEdge {
         Closure { stiffness: self.stiffness[0], most: setting.laws[self.law].closure_max }
     }
 
+    /// Whether its joint dilates.
+    #[inline(always)]
+    pub fn dilates(&self, setting: &ContactSetting) -> bool {
+        setting.laws[self.law].dilation > 0.0
+    }
+
     /// The load that the asperities have lifted after a step that opens the contact by `opened` (m).
     #[inline(always)]
     pub fn lift_load(&self, opened: f64) -> LiftLoad {
@@ -345,6 +351,13 @@ impl VertexEdge {
             Some(bond) => self.bond_limit(&bond, trial.abs(), opening),
             None => self.shear_limit_now(setting),
         };
+        self.clamped(trial, limit)
+    }
+
+    /// Shear force (N/m) that the spring stores of a `trial` one within its limit, and the slip (m) that takes off the
+    /// rest.
+    #[inline(always)]
+    pub(super) fn clamped(&self, trial: f64, limit: f64) -> (f64, f64) {
         let stored = trial.clamp(-limit, limit);
         (stored, (stored - trial) / self.stiffness[1])
     }

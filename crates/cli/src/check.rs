@@ -100,7 +100,6 @@ fn rock_mass(mass: &RockMass) -> String {
     )
 }
 
-/// The default normal stiffness of joints, and that of finer meshes.
 fn json_line(found: &Check) -> String {
     serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }

@@ -212,8 +212,7 @@ fn asked(contact: &VertexEdge, equation: &Equation, setting: &ContactSetting, u:
         eased: equation.eased,
         dt: equation.dt,
     };
-    let dilates = setting.laws[contact.law].dilation > 0.0;
-    let answer = if dilates { contact.climb(&slide, setting) } else { slide.normal };
+    let answer = if contact.dilates(setting) { contact.climb(&slide, setting) } else { slide.normal };
     [curve.force(answer, kept_normal), stick]
 }
 

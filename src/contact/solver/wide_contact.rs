@@ -203,8 +203,7 @@ impl WideContact {
             (false, true) => (-tension).next_down(),
             (false, false) => 0.0,
         };
-        let dilates = setting.laws[contact.law].dilation > 0.0;
-        self.curved |= limits.is_curved() | (start.closing[0] != 0) | dilates;
+        self.curved |= limits.is_curved() | (start.closing[0] != 0) | contact.dilates(setting);
     }
 
     /// Leaves a lane without contact.
@@ -379,7 +378,7 @@ impl WideContact {
             }
             let (closure, law) = (contact.closure(setting), contact.limits(setting));
             let kept = self.answers[0].kept[lane];
-            let dilates = setting.laws[contact.law].dilation > 0.0;
+            let dilates = contact.dilates(setting);
             let slips = |limit: f64| shear[lane].abs().max(contact.shear_stored().abs()) > limit;
             if dilates && slips(law.shear(closure.force(asked[lane], kept), contact.length)) {
                 asked[lane] =
