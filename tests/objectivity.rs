@@ -189,7 +189,7 @@ fn slope(law: &'static str, angle_deg: f64) -> Model {
 
 /// Angles (degrees) of the mesh.
 fn angles() -> &'static [f64] {
-    by_extent([&[17.0], &[0.0, 17.0], &[0.0, 17.0]])
+    by_extent([&[17.0], &[17.0], &[0.0, 17.0]])
 }
 
 #[test]

@@ -107,10 +107,10 @@ fn assert_same(place: &Place) {
     assert_eq!(stages("parts"), stages("whole"));
 }
 
-/// Six hundred thousand steps of a block that rests.
+/// Two hundred thousand steps of a block that rests.
 #[cfg(unix)]
 fn long_rest() -> String {
-    case(300.0).replace("friction_deg = 0.1", "friction_deg = 20")
+    case(100.0).replace("friction_deg = 0.1", "friction_deg = 20")
 }
 
 #[cfg(unix)]

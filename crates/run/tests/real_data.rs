@@ -150,11 +150,11 @@ fn settles(data: &Path, file: &str, size: f64, held_below: f64, friction: f64, s
 }
 
 fn long_kb11_settles_under_gravity(data: &Path) {
-    settles(data, "traces/kb11.json", 1.0, -16.0, 40.0, by_extent([150, 3000, 3000]));
+    settles(data, "traces/kb11.json", 1.0, -16.0, 40.0, by_extent([150, 1000, 3000]));
 }
 
 fn long_tyrol_gar_slope_medium_settles_under_gravity(data: &Path) {
-    settles(data, "slopes/tyrol_gar_slope_medium.json", 8.0, -25.0, 45.0, by_extent([50, 1300, 1300]));
+    settles(data, "slopes/tyrol_gar_slope_medium.json", 8.0, -25.0, 45.0, by_extent([50, 400, 1300]));
 }
 
 fn main() {

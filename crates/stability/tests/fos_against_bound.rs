@@ -266,8 +266,8 @@ fn a_grain_that_creeps_makes_no_verdict_alternate() {
     assert!((0.95..1.02).contains(&(factor / bound)), "{factor} of {bound}");
 }
 
-/// A slope of each of six kinds in turn; the quick form has the first, the full one the others.
+/// A slope of each of six kinds in turn; the quick form has the first, the full one three kinds.
 #[test]
 fn long_slopes_are_no_safer_than_limit_analysis_allows() {
-    compare_all(by_extent([0..1, 1..7, 0..66]));
+    compare_all(by_extent([0..1, 0..3, 0..66]));
 }

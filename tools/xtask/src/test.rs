@@ -9,7 +9,7 @@ use crate::bits;
 use crate::counts::{self, Counts};
 use crate::cross;
 use crate::faults;
-use crate::platform::{AARCH64_QUICK, WINDOWS_QUICK};
+use crate::platform::{AARCH64_QUICK, Platform, WINDOWS_QUICK};
 use crate::python::{self, Share};
 use crate::repository::{self, Beside, Repository};
 use crate::sanitize;
@@ -26,43 +26,59 @@ const LEFT_OUT: &str = "lints, Windows and ARM, Chromium, rustdoc, the oldest co
 /// The tests of a newcomer and of every commit: they install nothing outside the target folder.
 pub fn usual(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    take_usual(repository, &mut steps);
+    if take_build(repository, &mut steps) {
+        take_usual(repository, &mut steps, None);
+    }
     println!("\nleft out, for `cargo xtask test --all`: {LEFT_OUT}");
     steps.close()
 }
 
-/// The usual tests, then those that take long or need other systems.
+/// The usual tests, those of Rust in their full form, then those that need other systems.
 pub fn all(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    if take_usual(repository, &mut steps) {
+    if take_build(repository, &mut steps) {
+        let elsewhere = Elsewhere::start(repository);
+        take_usual(repository, &mut steps, Some(("ENMM_FULL", "1")));
         steps.print_counts();
-        take_others(repository, &mut steps);
+        take_others(repository, &mut steps, elsewhere);
     }
     steps.close()
 }
 
-/// Every step runs, whatever failed before, but for those that need the build; returns whether there is one.
-fn take_usual(repository: &Repository, steps: &mut Steps) -> bool {
+/// Builds that need target folders of their own: they fill the time in which tests leave a processor idle.
+struct Elsewhere {
+    oldest: Result<Option<Beside>, String>,
+    platforms: [(&'static str, Result<Option<cross::Quick>, String>); 2],
+}
+
+impl Elsewhere {
+    fn start(repository: &Repository) -> Self {
+        let quick = |platform: &'static Platform| (platform.name, cross::start_quick(repository, platform));
+        Self {
+            oldest: supply::start_oldest_compiler(repository),
+            platforms: [&WINDOWS_QUICK, &AARCH64_QUICK].map(quick),
+        }
+    }
+}
+
+/// Returns whether there is a build, which all other steps need; they run whatever failed before.
+fn take_build(repository: &Repository, steps: &mut Steps) -> bool {
     steps.take("format", || cargo(repository, &["fmt", "--all", "--check"]));
     std::thread::scope(|scope| {
         // The installation waits for the network more than it computes.
         scope.spawn(|| venv::prepare(repository, Packages::Usual));
-        if !steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default())) {
-            return false;
-        }
-        steps.take("tests", || cargo_test(repository, None, None));
-        steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
-        steps.take("bits", || bits::quick(repository));
-        steps.take("python", || python::test(repository, Share::Usual));
-        true
+        steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default()))
     })
 }
 
-fn take_others(repository: &Repository, steps: &mut Steps) {
-    // Builds that need target folders of their own: they fill the time in which tests leave a processor idle.
-    let oldest = supply::start_oldest_compiler(repository);
-    let platforms = [&WINDOWS_QUICK, &AARCH64_QUICK];
-    let platforms = platforms.map(|platform| (platform.name, cross::start_quick(repository, platform)));
+fn take_usual(repository: &Repository, steps: &mut Steps, extent: Option<(&str, &str)>) {
+    steps.take("tests", || cargo_test(repository, None, extent));
+    steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
+    steps.take("bits", || bits::quick(repository));
+    steps.take("python", || python::test(repository, Share::Usual));
+}
+
+fn take_others(repository: &Repository, steps: &mut Steps, elsewhere: Elsewhere) {
     steps.take("lints", || cargo(repository, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     steps.take("documentation", || {
         let mut doc = repository.cargo(&["doc", "--workspace", "--no-deps"]);
@@ -70,12 +86,11 @@ fn take_others(repository: &Repository, steps: &mut Steps) {
     });
     steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
     steps.take("other python", || python::test(repository, Share::Others));
-    steps.take("full tests", || cargo_test(repository, Some("long_"), Some(("ENMM_FULL", "1"))));
     steps.take("faults", || faults::rounds_of(repository, 1));
     steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
     steps.take("sanitizers", || sanitize::over_hosts(repository).map(|()| Counts::default()));
-    steps.take("oldest compiler", || oldest?.map_or(Ok(()), Beside::finish).map(|()| Counts::default()));
-    for (name, build) in platforms {
+    steps.take("oldest compiler", || elsewhere.oldest?.map_or(Ok(()), Beside::finish).map(|()| Counts::default()));
+    for (name, build) in elsewhere.platforms {
         steps.take(name, || cross::quick(repository, build?));
     }
 }
