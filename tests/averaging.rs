@@ -164,7 +164,7 @@ impl Footing {
 #[test]
 fn long_a_footing_on_clay_bears_what_prandtl_found() {
     let exact = 2.0 + std::f64::consts::PI;
-    for &(stiffness, rows) in by_extent([&[(2e4, 10.0)][..], &[(2e4, 20.0)], &[(2e4, 20.0), (2e5, 20.0)]]) {
+    for &(stiffness, rows) in by_extent([&[(2e4, 10.0)][..], &[(2e4, 10.0)], &[(2e4, 20.0), (2e5, 20.0)]]) {
         let mut simulation = ground(stiffness, rows);
         let footing = Footing::on(&simulation);
         let end = 80.0 / stiffness;

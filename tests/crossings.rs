@@ -179,7 +179,7 @@ fn a_joint_more_never_bears_more() {
 #[test]
 fn long_no_constant_decides_what_holds() {
     let base = "[[0, -1], [6, -1], [6, 0]";
-    for (name, rule) in varied_rules().into_iter().step_by(by_extent([7, 1, 1])) {
+    for (name, rule) in varied_rules().into_iter().step_by(by_extent([7, 3, 1])) {
         let angles = by_extent([&[135.0][..], &[60.0, 90.0, 135.0], &[60.0, 90.0, 135.0]]);
         let mut planes: Vec<Plane> = angles.iter().map(|&angle| Plane::crossing(angle, 20.0, SIZE)).collect();
         planes.push(Plane::block(base, [0.5, 1.5], &[1.4, 1.61, 1.82, 2.03, 2.24]));
