@@ -56,8 +56,8 @@ pub struct Averages {
     pub patch_mean: Vec<[f64; 2]>,
 }
 
-/// Elements and patches that a thread takes together.
-const RUN: usize = 1024;
+/// Elements or patches that a thread takes together: fixed, so that sums over them do not depend on the threads.
+pub const RUN: usize = 1024;
 
 /// Fills a list run by run; `fill` gets the index of the first value of each.
 pub fn fill_runs<T: Send>(serial: bool, list: &mut [T], fill: impl Fn(usize, &mut [T]) + Sync) {

@@ -19,7 +19,7 @@ pub use enmm_rock::{
     YieldSurface, YieldingRock, critical_dt, equivalent_strain,
 };
 
-pub use averaging::{Averages, Averaging, fill_runs};
+pub use averaging::{Averages, Averaging, RUN, fill_runs};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};

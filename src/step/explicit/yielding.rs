@@ -8,15 +8,12 @@ use rayon::prelude::*;
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::Vector;
 use crate::mechanics::{
-    self, Averages, Deformation, ElementRow, MassMatrix, PlasticStrain, Strained, YieldSurface, fill_runs,
+    self, Averages, Deformation, ElementRow, MassMatrix, PlasticStrain, RUN, Strained, YieldSurface, fill_runs,
 };
 use crate::state::{Flow, Grown, Model, State, YieldBuffers};
 
 use super::lane_work::{LaneWork, in_lanes};
 use super::{Substep, report};
-
-/// Elements that are summed and shared between threads as one run: fixed, so that sums do not depend on the threads.
-const RUN: usize = 1024;
 
 /// Brings the plastic strain of all elements to the current displacements under the strength of this time, and books
 /// what that takes (Eqs. 57, 58). Done twice at the same displacements it only comes nearer to the surface where
