@@ -26,9 +26,11 @@ const LEFT_OUT: &str = "lints, Windows and ARM, Chromium, rustdoc, the oldest co
 /// The tests of a newcomer and of every commit: they install nothing outside the target folder.
 pub fn usual(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    if take_build(repository, &mut steps) {
-        take_usual(repository, &mut steps, None);
-    }
+    while_packages_come(repository, || {
+        if take_build(repository, &mut steps) {
+            take_usual(repository, &mut steps, None);
+        }
+    });
     println!("\nleft out, for `cargo xtask test --all`: {LEFT_OUT}");
     steps.close()
 }
@@ -36,12 +38,14 @@ pub fn usual(repository: &Repository) -> ExitCode {
 /// The usual tests, those of Rust in their full form, then those that need other systems.
 pub fn all(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    if take_build(repository, &mut steps) {
-        let elsewhere = Elsewhere::start(repository);
-        take_usual(repository, &mut steps, Some(("ENMM_FULL", "1")));
-        steps.print_counts();
-        take_others(repository, &mut steps, elsewhere);
-    }
+    while_packages_come(repository, || {
+        if take_build(repository, &mut steps) {
+            let elsewhere = Elsewhere::start(repository);
+            take_usual(repository, &mut steps, Some(("ENMM_FULL", "1")));
+            steps.print_counts();
+            take_others(repository, &mut steps, elsewhere);
+        }
+    });
     steps.close()
 }
 
@@ -61,14 +65,18 @@ impl Elsewhere {
     }
 }
 
+/// Installs the Python packages beside `act`: that waits for the network more than it computes.
+fn while_packages_come(repository: &Repository, act: impl FnOnce()) {
+    std::thread::scope(|scope| {
+        scope.spawn(|| venv::prepare(repository, Packages::Usual));
+        act();
+    });
+}
+
 /// Returns whether there is a build, which all other steps need; they run whatever failed before.
 fn take_build(repository: &Repository, steps: &mut Steps) -> bool {
     steps.take("format", || cargo(repository, &["fmt", "--all", "--check"]));
-    std::thread::scope(|scope| {
-        // The installation waits for the network more than it computes.
-        scope.spawn(|| venv::prepare(repository, Packages::Usual));
-        steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default()))
-    })
+    steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default()))
 }
 
 fn take_usual(repository: &Repository, steps: &mut Steps, extent: Option<(&str, &str)>) {
