@@ -1,6 +1,6 @@
 //! Lift within a step: while a contact slips its asperities lift it, the lift presses it, and it slips less (Eq. 21).
 
-use super::{ContactSetting, VertexEdge};
+use super::{ContactSetting, Limits, VertexEdge};
 
 /// Trials of a lift at most. The second is exact where spring and friction follow straight lines.
 const TRIALS: usize = 8;
@@ -8,13 +8,11 @@ const TRIALS: usize = 8;
 const EXACT: f64 = 1e-12;
 
 /// A contact in a sweep before its lift.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Slide {
-    /// Answer of the normal spring: force (N/m), or the closure (m) that determines it.
+    /// Force (N/m) of the normal spring.
     pub normal: f64,
-    /// How the answer grows with its force, of a spring that follows a curve (m²/N).
-    pub kept: f64,
-    /// How the answer grows with velocity (per m/s).
+    /// How it grows with velocity (N·s/m²).
     pub rate: f64,
     /// Shear force (N/m) that it would have if it did not slip.
     pub stick: f64,
@@ -29,20 +27,22 @@ pub struct Slide {
 }
 
 impl VertexEdge {
-    /// Answer of the normal spring when the contact climbs in the step: one that goes down does so after it.
-    pub fn climb(&self, slide: &Slide, setting: &ContactSetting) -> f64 {
-        let (law, limits, closure) = (&setting.laws[self.law], self.limits(setting), self.closure(setting));
-        let lifted = |lift: f64| slide.normal + slide.rate / slide.dt * lift;
-        let rise = |lift: f64| {
-            let normal = closure.force(lifted(lift), slide.kept);
-            // One that is open without lift climbs as one does that is just in touch: no sweep jumps between both.
-            let limit = limits.shear(normal.max(-limits.tension()), self.length);
-            let slip = self.slip(slide, limit);
-            let rise = law.rise(self.history.way, slip);
-            // Friction pays for the lift.
-            if normal > 0.0 { rise.min(limit * slip.abs() / normal) } else { rise }
+    /// Answer of the normal spring, which is linear, when the contact climbs in the step: one that goes down does so
+    /// after it.
+    pub fn climb(&self, slide: &Slide, limits: &Limits, setting: &ContactSetting) -> f64 {
+        let (law, per_lift) = (&setting.laws[self.law], slide.rate / slide.dt);
+        let missing = |lift: f64| {
+            // One that is open climbs as one does that is just in touch: no sweep jumps between both.
+            let normal = (slide.normal + per_lift * lift).max(-limits.tension());
+            let [friction, cohesion] = limits.line(normal, self.length);
+            let slip = self.slip(slide, (normal * friction + cohesion).max(0.0));
+            let heat = [friction, cohesion].map(|part| part * slip.abs());
+            paid(law.rise(self.history.way, slip), heat, [slide.normal, per_lift]) - lift
         };
-        lifted(balance(rise))
+        let [friction, _] = limits.line(slide.normal, self.length);
+        let falls = per_lift * friction * law.dilation * (slide.dt * slide.eased + 1.0 / self.stiffness[1]);
+        let touch = (-limits.tension() - slide.normal).max(0.0) / per_lift;
+        slide.normal + per_lift * balance(missing, touch, falls)
     }
 
     /// Slip (m) in a step with this limit of shear (N/m).
@@ -54,25 +54,46 @@ impl VertexEdge {
     }
 }
 
-/// The lift (m) that raises by itself, between none and what raises without lift: `rise` falls with the lift.
-fn balance(rise: impl Fn(f64) -> f64) -> f64 {
-    let first = rise(0.0);
+/// As much of a rise (m) as friction pays for, against a force (N/m) that grows with the lift: its heat is one part per
+/// normal force (m), which pays for as much lift, and one beside that (J/m).
+#[inline(always)]
+fn paid(rise: f64, [free, heat]: [f64; 2], [force, grows]: [f64; 2]) -> f64 {
+    let (more, force) = (rise - free, force + grows * free);
+    if more <= 0.0 || more * (force + grows * more) <= heat {
+        return rise;
+    }
+    let root = (force * force + 4.0 * grows * heat).sqrt();
+    free + if force > 0.0 { 2.0 * heat / (force + root) } else { (root - force) / (2.0 * grows) }
+}
+
+/// The lift (m), none or more, that misses nothing. What is `missing` falls by as much as the lift grows until a
+/// `touch`, and by 1 + `falls` times as much beyond it, along a straight line.
+fn balance(missing: impl Fn(f64) -> f64, touch: f64, falls: f64) -> f64 {
+    let first = missing(0.0);
     if first <= 0.0 {
         return 0.0;
     }
-    let (mut low, mut high) = ([0.0, first], [first, rise(first) - first]);
-    let mut lift = first;
-    for _ in 1..TRIALS {
+    let exact = EXACT * first;
+    let mut lift = first - falls * (first - touch).max(0.0) / (1.0 + falls);
+    let more = missing(lift);
+    if more.abs() <= exact {
+        return lift;
+    }
+    let (mut low, mut high) = ([0.0, first], [lift, more]);
+    if more > 0.0 {
+        (low, high) = (high, [first, missing(first).min(-exact)]);
+    }
+    for _ in 2..TRIALS {
         lift = low[0] + (high[0] - low[0]) * low[1] / (low[1] - high[1]);
-        let missing = rise(lift) - lift;
-        if missing.abs() <= EXACT * first {
+        let more = missing(lift);
+        if more.abs() <= exact {
             break;
         }
         // Illinois: the end that stays counts half.
-        if missing > 0.0 {
-            (low, high[1]) = ([lift, missing], 0.5 * high[1]);
+        if more > 0.0 {
+            (low, high[1]) = ([lift, more], 0.5 * high[1]);
         } else {
-            (high, low[1]) = ([lift, missing], 0.5 * low[1]);
+            (high, low[1]) = ([lift, more], 0.5 * low[1]);
         }
     }
     lift

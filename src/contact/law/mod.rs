@@ -91,62 +91,52 @@ impl Limits {
     /// positive).
     #[inline(always)]
     pub fn shear(self, normal: f64, length: f64) -> f64 {
+        let [friction, cohesion] = self.line(normal, length);
+        (normal * friction + cohesion).max(0.0)
+    }
+
+    /// Friction, and the shear force (N/m) beside it, under a normal force (N/m) over a length (m).
+    #[inline(always)]
+    pub fn line(self, normal: f64, length: f64) -> [f64; 2] {
         match self {
-            Self::MohrCoulomb { friction, cohesion, .. } => (normal * friction + cohesion).max(0.0),
-            Self::BartonBandis { .. } if normal <= 0.0 => 0.0,
-            Self::BartonBandis { roughness, factor } => normal * roughness.friction(normal / length) * factor,
+            Self::MohrCoulomb { friction, cohesion, .. } => [friction, cohesion],
+            Self::BartonBandis { .. } if normal <= 0.0 => [0.0; 2],
+            Self::BartonBandis { roughness, factor } => [roughness.friction(normal / length) * factor, 0.0],
         }
     }
 
     /// Greatest shear force (N/m) of a contact that is open: of one that has just hopped.
     #[inline(always)]
     pub fn shear_open(&self) -> f64 {
-        match self {
-            Self::MohrCoulomb { felt, .. } => *felt,
-            Self::BartonBandis { .. } => 0.0,
-        }
+        if let Self::MohrCoulomb { felt, .. } = self { *felt } else { 0.0 }
     }
 
     /// Limits where the mean normal stress (Pa) of its faces rules the friction of a rough joint.
     pub fn under(self, mean_stress: f64) -> Self {
-        match self {
-            Self::MohrCoulomb { .. } => self,
-            Self::BartonBandis { roughness, factor } => {
-                let friction = roughness.friction(mean_stress) * factor;
-                Self::MohrCoulomb { friction, cohesion: 0.0, tension: 0.0, felt: 0.0 }
-            }
-        }
+        let Self::BartonBandis { roughness, factor } = self else { return self };
+        let friction = roughness.friction(mean_stress) * factor;
+        Self::MohrCoulomb { friction, cohesion: 0.0, tension: 0.0, felt: 0.0 }
     }
 
     /// Limits of friction that feels a `share` of the normal force of this step, and the rest from the normal force
     /// `felt` (N/m) before it (Eq. 84).
     pub fn delayed(self, share: f64, felt: f64) -> Self {
-        match self {
-            Self::MohrCoulomb { friction, cohesion, tension, .. } => {
-                let felt = (1.0 - share) * felt * friction;
-                let (friction, cohesion) = (share * friction, cohesion + felt);
-                Self::MohrCoulomb { friction, cohesion, tension, felt: felt.max(0.0) }
-            }
-            Self::BartonBandis { .. } => self,
-        }
+        let Self::MohrCoulomb { friction, cohesion, tension, .. } = self else { return self };
+        let felt = (1.0 - share) * felt * friction;
+        let (friction, cohesion) = (share * friction, cohesion + felt);
+        Self::MohrCoulomb { friction, cohesion, tension, felt: felt.max(0.0) }
     }
 
     /// Whether shear strength is nonlinear in the normal force, so that each sweep evaluates it.
     #[inline(always)]
     pub fn is_curved(&self) -> bool {
-        match self {
-            Self::MohrCoulomb { .. } => false,
-            Self::BartonBandis { .. } => true,
-        }
+        matches!(self, Self::BartonBandis { .. })
     }
 
     /// Greatest tensile force (N/m).
     #[inline(always)]
     pub fn tension(&self) -> f64 {
-        match self {
-            Self::MohrCoulomb { tension, .. } => *tension,
-            Self::BartonBandis { .. } => 0.0,
-        }
+        if let Self::MohrCoulomb { tension, .. } = self { *tension } else { 0.0 }
     }
 
     /// Limits of joints whose strength is multiplied by `by`.

@@ -29,10 +29,8 @@ struct Equation {
     closure: Closure,
     /// Bond that softens.
     bond: Option<Bond>,
-    /// Velocity (m/s) along the edge without contact forces, what a shear force adds to it (m/s per N/m), and step (s).
-    speed: f64,
-    eased: f64,
-    dt: f64,
+    /// What a lift needs, with the velocity along the edge without contact forces and nothing that sweeps change.
+    slide: Slide,
 }
 
 impl Equation {
@@ -66,8 +64,9 @@ impl Equation {
         };
         let answers = [closing, spring(1).response(contact.shear_stored())];
         let z = [0, 1].map(|k| pair.z(k, masses));
-        let (speed, eased, dt) = (speed[1], compliance[1] * options.kick, options.dt);
-        Self { pair, arms, z, answers, closure, bond, speed, eased, dt }
+        let eased = compliance[1] * options.kick;
+        let slide = Slide { speed: speed[1], eased, dt: options.dt, ..Slide::default() };
+        Self { pair, arms, z, answers, closure, bond, slide }
     }
 }
 
@@ -204,15 +203,14 @@ fn asked(contact: &VertexEdge, equation: &Equation, setting: &ContactSetting, u:
     let stick = shear / (1.0 + kept_shear);
     let slide = Slide {
         normal: normal * share,
-        kept: kept_normal,
         rate: equation.answers[0].rate * share,
         stick,
         shear: force[1],
-        speed: equation.speed + along[1],
-        eased: equation.eased,
-        dt: equation.dt,
+        speed: equation.slide.speed + along[1],
+        ..equation.slide
     };
-    let answer = if contact.dilates(setting) { contact.climb(&slide, setting) } else { slide.normal };
+    let climbs = contact.dilates(setting);
+    let answer = if climbs { contact.climb(&slide, &contact.limits(setting), setting) } else { slide.normal };
     [curve.force(answer, kept_normal), stick]
 }
 

@@ -380,9 +380,9 @@ impl WideContact {
             let kept = self.answers[0].kept[lane];
             let dilates = contact.dilates(setting);
             let slips = |limit: f64| shear[lane].abs().max(contact.shear_stored().abs()) > limit;
-            if dilates && slips(law.shear(closure.force(asked[lane], kept), contact.length)) {
-                asked[lane] =
-                    contact.climb(&self.slide(lane, contact, from, [asked[lane], shear[lane]], speed), setting);
+            if dilates && slips(law.shear(asked[lane], contact.length)) {
+                let slide = self.slide(lane, contact, from, [asked[lane], shear[lane]], speed);
+                asked[lane] = contact.climb(&slide, &law, setting);
             }
             asked[lane] = closure.force(asked[lane], kept);
             if closure.is_curved() || law.is_curved() || dilates {
@@ -404,7 +404,6 @@ impl WideContact {
         let fixed = contact.relative(from.approach.setting.boundary, from.approach.predicted)[1];
         Slide {
             normal,
-            kept: spring.kept[lane],
             rate: spring.rate[lane],
             stick,
             shear: self.force[1][lane],
