@@ -95,20 +95,32 @@ fn long_the_slope_that_dilates_rests_where_limit_analysis_says() {
     }
 }
 
-/// Friction that feels the pressure before a step pays for part of the lift alone. Where the search for that part
-/// stopped too early, sweeps ran in circles: one step of 24 did not settle here, one of six later in the failure.
-#[test]
-fn a_failing_slope_that_dilates_settles_in_every_step() {
+/// The slope fails from the start, with joints of this friction, dilation and cohesion, and settles in every step.
+fn settles_in_every_step([friction_deg, dilation_deg, cohesion]: [f64; 3]) {
     let mut case = fractured_slope();
     case.stages.remove(0);
     case.stages[0].duration = 0.12;
     for law in case.joint_laws.values_mut() {
-        (law.friction_deg, law.dilation_deg) = (28.0, 15.0);
+        (law.friction_deg, law.dilation_deg, law.cohesion) = (friction_deg, dilation_deg, cohesion);
     }
     let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
     let report = run_stage(&mut simulation);
     let counters = simulation.state().counters;
     println!("{report:?} {counters:?}");
     assert!(counters.substeps > 100 && counters.unsettled == 0, "{counters:?}");
-    assert!(report.ledger.residual().abs() < 1e-3 * report.ledger.largest(), "{:?}", report.ledger);
+    assert!(report.ledger.residual().abs() < 1e-4 * report.ledger.largest(), "{:?}", report.ledger);
+}
+
+/// Friction that feels the pressure before a step pays for part of the lift alone. Where the search for that part
+/// stopped too early, sweeps ran in circles: one step of 24 did not settle here, one of six later in the failure.
+#[test]
+fn a_failing_slope_that_dilates_settles_in_every_step() {
+    settles_in_every_step([28.0, 15.0, 0.0]);
+}
+
+/// Where the shear force of a contact that opened jumped from the cohesion to none, sweeps went from one to the other:
+/// 304 sub-steps did not settle, and the residual of the energy was 3e-4.
+#[test]
+fn a_failing_slope_with_cohesion_settles_in_every_step() {
+    settles_in_every_step([20.0, 0.0, 20e3]);
 }

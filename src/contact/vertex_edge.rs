@@ -246,8 +246,9 @@ impl VertexEdge {
     /// Greatest shear force (N/m) in the state and under the normal force of the end of the step.
     #[inline(always)]
     fn shear_limit_now(&self, setting: &ContactSetting) -> f64 {
-        let (limits, normal) = (self.limits(setting), self.history.normal_force);
-        if self.history.state == ContactState::Open { limits.shear_open() } else { limits.shear(normal, self.length) }
+        let (limits, ContactHistory { normal_force, shear_force, state, .. }) = (self.limits(setting), self.history);
+        let open = limits.shear_open(f64::NEG_INFINITY).max(shear_force.abs());
+        if state == ContactState::Open { open } else { limits.shear(normal_force, self.length) }
     }
 
     /// Normal force (N/m) that friction feels after the step.
@@ -343,7 +344,7 @@ impl VertexEdge {
     /// `opening` (m), and the slip (m) of the node along it (Eq. 15).
     #[inline(always)]
     pub fn shear_after(&self, shear: f64, opening: f64, setting: &ContactSetting) -> (f64, f64) {
-        if self.history.state == ContactState::Open && !self.delayed {
+        if self.history.state == ContactState::Open && !self.delayed && self.history.shear_force == 0.0 {
             return (0.0, 0.0);
         }
         let trial = self.shear_stored() - self.stiffness[1] * shear;
@@ -408,7 +409,7 @@ impl VertexEdge {
         let torn = normal < -limits.tension();
         let bears = !torn && (normal > 0.0 || limits.tension() > 0.0);
         let limit = limits.shear(normal, self.length);
-        let hops = limits.shear_open();
+        let hops = limits.shear_open(normal);
         let force = if bears { [normal, shear.clamp(-limit, limit)] } else { [0.0, shear.clamp(-hops, hops)] };
         self.bear(force, bears, torn, limit);
     }

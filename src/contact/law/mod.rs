@@ -105,10 +105,11 @@ impl Limits {
         }
     }
 
-    /// Greatest shear force (N/m) of a contact that is open: of one that has just hopped.
+    /// Greatest shear force (N/m) of a contact that is open, where its spring would pull with `normal` (N/m, negative):
+    /// cohesion fades with that pull, so that it does not jump, and friction still feels a hop.
     #[inline(always)]
-    pub fn shear_open(&self) -> f64 {
-        if let Self::MohrCoulomb { felt, .. } = self { *felt } else { 0.0 }
+    pub fn shear_open(&self, normal: f64) -> f64 {
+        if let Self::MohrCoulomb { felt, cohesion, .. } = self { felt.max(cohesion + normal) } else { 0.0 }
     }
 
     /// Limits where the mean normal stress (Pa) of its faces rules the friction of a rough joint.
@@ -143,12 +144,10 @@ impl Limits {
     #[inline(always)]
     pub fn times(self, by: f64) -> Self {
         match self {
-            Self::MohrCoulomb { friction, cohesion, tension, felt } => Self::MohrCoulomb {
-                friction: friction * by,
-                cohesion: cohesion * by,
-                tension: tension * by,
-                felt: felt * by,
-            },
+            Self::MohrCoulomb { friction, cohesion, tension, felt } => {
+                let [friction, cohesion, tension, felt] = [friction, cohesion, tension, felt].map(|part| part * by);
+                Self::MohrCoulomb { friction, cohesion, tension, felt }
+            }
             Self::BartonBandis { roughness, factor } => Self::BartonBandis { roughness, factor: factor * by },
         }
     }

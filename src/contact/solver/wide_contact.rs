@@ -334,7 +334,8 @@ impl WideContact {
         // No branch depends on which contacts are closed, slip or change: it would be known too late.
         let open = lanes.load(&self.open);
         (self.open_lanes, self.compressed) = (lanes.at_most(normal, open), lanes.at_most(zero, normal));
-        let limit = lanes.select(self.open_lanes, lanes.load(&self.felt), limit);
+        let fades = lanes.max(lanes.load(&self.felt), lanes.load(&self.cohesion) + normal);
+        let limit = lanes.select(self.open_lanes, fades, limit);
         let force = [lanes.keep_above(normal, normal, open), lanes.min(lanes.max(shear, -limit), limit)];
         let step = [force[0] - old[0], force[1] - old[1]];
         let impulse = turned(lanes, [x, y], step, from.options.kick);
