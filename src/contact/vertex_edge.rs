@@ -247,6 +247,7 @@ impl VertexEdge {
     #[inline(always)]
     fn shear_limit_now(&self, setting: &ContactSetting) -> f64 {
         let (limits, ContactHistory { normal_force, shear_force, state, .. }) = (self.limits(setting), self.history);
+        // Of an open contact the pull is not kept: its force shows how much cohesion was left.
         let open = limits.shear_open(f64::NEG_INFINITY).max(shear_force.abs());
         if state == ContactState::Open { open } else { limits.shear(normal_force, self.length) }
     }

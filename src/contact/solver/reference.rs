@@ -29,7 +29,7 @@ struct Equation {
     closure: Closure,
     /// Bond that softens.
     bond: Option<Bond>,
-    /// What a lift needs, with the velocity along the edge without contact forces and nothing that sweeps change.
+    /// The slide before a lift, at the velocity along the edge without contact forces, but for forces of a sweep.
     slide: Slide,
 }
 
