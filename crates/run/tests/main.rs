@@ -10,4 +10,5 @@ mod issue_history_did_not_sum_to_its_residual;
 #[path = "../../picture/tests/sample.rs"]
 mod sample;
 mod time_left;
+mod unsettled_steps;
 mod vtu;

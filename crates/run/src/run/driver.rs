@@ -16,7 +16,7 @@ use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
 use enmm::model::bytes::BytesError;
-use enmm::model::case::{Invalid, PictureKind, StageKind};
+use enmm::model::case::{Integrator, Invalid, PictureKind, StageKind};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::tables::{BlockId, Seconds};
 use enmm::model::{Event, EventKind, Ledger, Restless, Simulation, State, StepError, StepReport, settle};
@@ -37,6 +37,8 @@ const CHECKPOINT: &str = "checkpoint.enmm";
 const GOOD_STEPS: u64 = 200;
 /// Blocks that a warning names.
 const NAMED: usize = 3;
+/// Share of unsettled steps above which a stage is warned of: a few are usual where blocks strike each other.
+const UNSETTLED_SHARE: f64 = 0.01;
 
 /// Progress of a run beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -409,6 +411,7 @@ impl<'a> Driver<'a> {
     }
 
     fn warn_of_stage(&mut self, converged: bool, restless: &[Restless]) -> Result<(), RunError> {
+        self.warn_of_unsettled()?;
         let stage = self.simulation.stage();
         if stage.kind == StageKind::Static && converged && !restless.is_empty() {
             let name = &stage.name;
@@ -432,6 +435,30 @@ impl<'a> Driver<'a> {
             ))?;
         }
         Ok(())
+    }
+
+    /// Warns of a stage in which contacts often end a step with other forces than their joint laws give.
+    fn warn_of_unsettled(&mut self) -> Result<(), RunError> {
+        let (steps, unsettled) = (self.simulation.state().stage_step, self.unsettled());
+        if unsettled as f64 <= UNSETTLED_SHARE * steps as f64 {
+            return Ok(());
+        }
+        let (name, solver) = (&self.simulation.stage().name, &self.simulation.case().solver);
+        let (most, step) = match solver.integrator {
+            Integrator::Explicit => (format!("{} sweeps (solver.sweeps_max)", solver.sweeps_max), "dt_max"),
+            Integrator::Implicit => {
+                (format!("{} iterations (solver.iterations_max)", solver.iterations_max), "implicit_step")
+            }
+        };
+        self.warn(format!(
+            "stage {name:?}: the open–close iteration did not settle within {most} in {unsettled} sub-steps of {steps} \
+             steps, so that joints may slip or open falsely; compare with a run of shorter steps (solver.{step})"
+        ))
+    }
+
+    /// Sub-steps of the stage that ended unsettled.
+    fn unsettled(&self) -> u64 {
+        self.simulation.state().counters.unsettled - self.progress.unsettled_before
     }
 
     /// Whether this stage and all before it are static, so that every slip so far belongs to settling.
@@ -461,7 +488,7 @@ impl<'a> Driver<'a> {
             unbalanced: progress.unbalanced,
             kinetic_energy: progress.ledger.kinetic,
             potential_released: progress.potential_start.unwrap_or(potential) - potential,
-            unsettled: state.counters.unsettled - progress.unsettled_before,
+            unsettled: self.unsettled(),
             penetration_max: progress.penetration_max,
         }
     }
