@@ -54,6 +54,52 @@ fn long_a_block_that_drops_on_a_corner_keeps_its_energy() {
     }
 }
 
+/// Corners land beside nodes of the ground, tilted by nearly 10°, and turn on; such impacts lost up to a sixth.
+#[test]
+fn long_a_block_that_bounces_on_keeps_its_energy() {
+    for &(angle, stiffness, seconds) in by_extent([&ALL[..1], &ALL[..1], ALL]) {
+        let (worst, impacts) = worst_change(angle, stiffness, seconds);
+        println!("{angle}°, {stiffness:e} Pa/m: {worst:.2e} in {impacts} impacts");
+        assert!(impacts > 20 && worst < 1e-4, "{angle}°, {stiffness:e} Pa/m: {worst:.2e} in {impacts} impacts");
+    }
+}
+
+/// Angles, stiffnesses and times of bounces.
+const ALL: &[(f64, f64, f64)] = &[(9.0, 1e8, 11.0), (5.0, 1e8, 40.0), (9.0, 1e9, 40.0), (22.0, 1e9, 40.0)];
+
+/// Friction and normal impulse of a square that slides at 5 m/s while it hits the ground flat, over its friction.
+fn friction_of_impact(stiffness: f64, young: &str, friction_deg: f64) -> f64 {
+    let case = drop(0.0, stiffness).replace("friction_deg = 0.0", &format!("friction_deg = {friction_deg:?}"));
+    let case = case.replace("young = 1e12", &format!("young = {young}"));
+    let slides = "[[initial_velocity]]\nblock = [0.5, 1.0]\nvelocity = [5.0, -1.0]\n[[stage]]";
+    let mut simulation = simulation(&case.replace("[[stage]]", slides));
+    let block = simulation.block_states().iter().position(|block| !block.fixed).expect("a block");
+    let mut impulse = [0.0; 2];
+    loop {
+        let start = simulation.time();
+        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
+        let dt = simulation.time() - start;
+        for contact in &simulation.state().contacts {
+            impulse[0] += contact.normal_force * dt;
+            impulse[1] += contact.shear_force.abs() * dt;
+        }
+        if simulation.block_states()[block].detached && impulse[0] > 0.0 {
+            return impulse[1] / impulse[0] / friction_deg.to_radians().tan();
+        }
+    }
+}
+
+/// On joints of their own stiffness friction followed the normal force a step late, and the delay of friction set in
+/// before the faces of an elastic block had parted: 0.96 and 1.09 of its friction.
+#[test]
+fn a_block_that_slides_into_the_ground_has_its_whole_friction() {
+    for (stiffness, young) in [(1e8, "1e12"), (1e9, "1e12"), (1e8, "5e9"), (1e9, "5e9")] {
+        let share = friction_of_impact(stiffness, young, 10.0);
+        println!("{stiffness:e} Pa/m, {young} Pa: {share:.4}");
+        assert!((share - 1.0).abs() < 0.02, "{stiffness:e} Pa/m, {young} Pa: {share}");
+    }
+}
+
 /// Speed (m/s) at which a square of 1 m leaves the ground that it hits flat at `speed` (m/s), and its simulation then;
 /// the rock crushes at `crush` (Pa).
 fn rebound(speed: f64, stiffness: f64, crush: &str) -> (f64, enmm::model::Simulation) {

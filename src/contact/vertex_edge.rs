@@ -80,6 +80,11 @@ impl Unloaded {
     pub fn gap(&self) -> f64 {
         self.rest - self.offset
     }
+
+    /// Ends what a node at a gap (m) has left of its initial penetration: deeper than it is now it meets the spring.
+    pub fn leave(&mut self, gap: f64) {
+        self.offset -= (gap - self.gap()).clamp(0.0, self.offset.max(0.0));
+    }
 }
 
 impl ContactHistory {
@@ -243,13 +248,22 @@ impl VertexEdge {
         self.limits(setting).shear(normal, self.length)
     }
 
-    /// Greatest shear force (N/m) in the state and under the normal force of the end of the step.
+    /// Normal force (N/m) at the end of a step that leaves the joint open by `opening` (m): a spring of the joint's own
+    /// that `bounces` has in the step the force of its start.
     #[inline(always)]
-    fn shear_limit_now(&self, setting: &ContactSetting) -> f64 {
-        let (limits, ContactHistory { normal_force, shear_force, state, .. }) = (self.limits(setting), self.history);
+    pub fn normal_after(&self, opening: f64, bounces: bool, setting: &ContactSetting) -> f64 {
+        let is_late = bounces && !setting.laws[self.law].penalty[0];
+        // A curve has no finite force where a blow closes it altogether.
+        if is_late { self.closure(setting).solve(-opening, 0.0).min(f64::MAX) } else { self.history.normal_force }
+    }
+
+    /// Greatest shear force (N/m) in the state of the end of the step, under its normal force (N/m).
+    #[inline(always)]
+    fn shear_limit_after(&self, normal: f64, setting: &ContactSetting) -> f64 {
+        let (limits, ContactHistory { shear_force, state, .. }) = (self.limits(setting), self.history);
         // Of an open contact the pull is not kept: its force shows how much cohesion was left.
         let open = limits.shear_open(f64::NEG_INFINITY).max(shear_force.abs());
-        if state == ContactState::Open { open } else { limits.shear(normal_force, self.length) }
+        if state == ContactState::Open { open } else { limits.shear(normal, self.length) }
     }
 
     /// Normal force (N/m) that friction feels after the step.
@@ -335,23 +349,20 @@ impl VertexEdge {
         [relative.dot(&self.normal), relative.dot(&self.tangent())]
     }
 
-    /// Greatest shear force (N/m) of a bond in a step that leaves it open by `opening` (m), and whose spring would
-    /// store the shear force `trial` (N/m) without slip.
-    fn bond_limit(&self, bond: &Bond, trial: f64, opening: f64) -> f64 {
-        bond.shear(self.history.normal_force, trial, 1.0 / self.stiffness[1], bond.damage_at(opening))
-    }
-
     /// Shear force (N/m) that the spring stores after moving by `shear` (m) in a step that leaves the joint open by
-    /// `opening` (m), and the slip (m) of the node along it (Eq. 15).
+    /// `opening` (m) under a normal force (N/m), and the slip (m) of the node along it (Eq. 15).
     #[inline(always)]
-    pub fn shear_after(&self, shear: f64, opening: f64, setting: &ContactSetting) -> (f64, f64) {
+    pub fn shear_after(&self, shear: f64, (opening, normal): (f64, f64), setting: &ContactSetting) -> (f64, f64) {
         if self.history.state == ContactState::Open && !self.delayed && self.history.shear_force == 0.0 {
             return (0.0, 0.0);
         }
         let trial = self.shear_stored() - self.stiffness[1] * shear;
         let limit = match self.bond(setting) {
-            Some(bond) => self.bond_limit(&bond, trial.abs(), opening),
-            None => self.shear_limit_now(setting),
+            Some(bond) => {
+                let ease = 1.0 / self.stiffness[1];
+                bond.shear(self.history.normal_force, trial.abs(), ease, bond.damage_at(opening))
+            }
+            None => self.shear_limit_after(normal, setting),
         };
         self.clamped(trial, limit)
     }

@@ -141,7 +141,7 @@ pub struct SelectionBuffers {
 }
 
 /// The face that the contacts of one block with one side are, in a step.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Face {
     /// The side.
     pub side: SideId,
@@ -149,6 +149,8 @@ pub struct Face {
     pub age: f32,
     /// Whether it is in touch.
     pub touches: bool,
+    /// Whether one of its contacts keeps the stiffness of an impact.
+    pub strikes: bool,
     /// Normal force (N/m) that friction feels, of all its contacts.
     pub felt: f64,
     /// Length (m) of those contacts where it feels any.

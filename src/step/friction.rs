@@ -10,7 +10,7 @@ use super::{Regime, Substep};
 
 /// Longest delay (s) that a stage takes by itself.
 const DELAY_MAX: f64 = 0.02;
-/// Delays for which faces must have been in touch before friction is delayed: an impact has its friction at once.
+/// Delays for which faces must have been in touch before friction is delayed; an impact has its friction at once.
 const YOUNG: f64 = 4.0;
 /// Height (m) of the asperities that faces hop over without parting, and the same over the penetration at rest.
 const ASPERITY: f64 = 1e-3;
@@ -55,11 +55,12 @@ fn find_faces(contacts: &[VertexEdge], delay: Option<FrictionDelay>, FaceBuffers
         let slot = &mut of_side[history.side];
         if faces.get(*slot as usize).is_none_or(|face| face.side != history.side) {
             *slot = faces.len() as u32;
-            faces.push(Face { side: history.side, age: 0.0, touches: false, felt: 0.0, length: 0.0 });
+            faces.push(Face { side: history.side, ..Face::default() });
         }
         let face = &mut faces[*slot as usize];
         face.age = face.age.max(history.meeting.age);
         face.touches |= contact.gap < hop;
+        face.strikes |= history.meeting.kept_stiffness > 0.0;
         face.felt += history.felt;
         face.length += if history.felt > 0.0 { contact.length } else { 0.0 };
     }
@@ -80,7 +81,8 @@ fn follow_face(
     if is_rough {
         contact.past = if face.length > 0.0 { face.felt / face.length } else { 0.0 };
     }
-    contact.delayed = delay.is_some_and(|delay| delay.time > 0.0 && f64::from(face.age) >= YOUNG * delay.time);
+    let is_old = |time: f64| time > 0.0 && f64::from(face.age) >= YOUNG * time;
+    contact.delayed = !face.strikes && delay.is_some_and(|delay| is_old(delay.time));
     contact.history.meeting.age = face.age + dt as f32;
 }
 

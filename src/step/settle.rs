@@ -41,7 +41,9 @@ impl Kernel for Settle<'_> {
             // Not by `map` of an array, for which the contact would be written to memory.
             let relative = |velocity: &[Vector]| contact.relative(setting.boundary, velocity);
             let [before, after] = [relative(velocities[0]), relative(velocities[1])];
-            let (stored, slipped) = contact.shear_after(after[1] * dt, contact.gap + after[0] * dt, &setting);
+            let opening = contact.gap + after[0] * dt;
+            let normal = contact.normal_after(opening, !rests, &setting);
+            let (stored, slipped) = contact.shear_after(after[1] * dt, (opening, normal), &setting);
             let moved = [0, 1].map(|k| 0.5 * (before[k] + after[k]) * kick);
             let heat = (stored * slipped).abs();
             add_works(outcome, contact, moved, heat);

@@ -92,7 +92,7 @@ impl ImplicitStep<'_> {
             let shear = mean(contact.history.shear_force, before[1]) * sheared;
             works.contact_work += mean(contact.history.normal_force, before[0]) * opened + shear;
             if contact.history.state == ContactState::Slip {
-                let (kept, _) = contact.shear_after(sheared, contact.gap, &setting);
+                let (kept, _) = contact.shear_after(sheared, (contact.gap, contact.history.normal_force), &setting);
                 let old = contact.shear_stored();
                 works.friction -= shear + 0.5 * (kept * kept - old * old) / contact.stiffness[1];
             }

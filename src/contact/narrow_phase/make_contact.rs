@@ -55,7 +55,7 @@ impl NarrowPhase<'_> {
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
-        let Tributary { length, bonded, penalty, share, whole } = self.tributary(node, candidate);
+        let Tributary { length, bonded, penalty, share, alone } = self.tributary(node, candidate);
         let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law: self.law(node, edge) };
         if self.softens {
             bond = self.bond(candidate, bond);
@@ -72,9 +72,10 @@ impl NarrowPhase<'_> {
         if let Some(masses) = self.impacts {
             let blocks = [point, edge].map(|point| boundary.block[point]);
             let mass = 1.0 / (masses[blocks[0].index()] + masses[blocks[1].index()]);
-            let kept = self.keep_stiffness(candidate.gap, (stiffness[0], whole), mass, &mut history);
+            let kept = self.keep_stiffness(candidate.gap, (stiffness[0], alone), mass, &mut history);
             stiffness = stiffness.map(|k| k * kept);
         }
+        history.unloaded.leave(candidate.gap);
         let gap = candidate.gap + history.unloaded.offset;
         if self.laws[law].penalty[0] {
             let blocks = [point, edge].map(|point| boundary.block[point]);
@@ -164,7 +165,7 @@ impl NarrowPhase<'_> {
     /// much time again, or at once where it begins to share its length with another one (Eq. 86). The force does not
     /// grow by that, for which it gets an allowance.
     #[inline(always)]
-    fn keep_stiffness(&self, gap: f64, (now, whole): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
+    fn keep_stiffness(&self, gap: f64, (now, alone): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
         let (age, kept) = (f64::from(history.meeting.age), f64::from(history.meeting.kept_stiffness));
         let closed = gap + history.unloaded.offset - history.unloaded.rest;
         let swing = TAU * (mass / if kept > 0.0 { kept } else { now }).sqrt();
@@ -173,17 +174,19 @@ impl NarrowPhase<'_> {
             return 1.0;
         }
         if kept == 0.0 {
-            if closed < 0.0 && age < swing && whole {
+            if closed < 0.0 && age < swing && alone && history.share == 1.0 {
                 history.meeting.kept_stiffness = now as f32;
             }
             return 1.0;
         }
-        if age < swing && whole {
+        if age < swing && alone {
+            history.share = 1.0;
             return kept / now;
         }
-        let share = if whole { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
+        let share = if alone { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
         let next = kept + (now - kept) * share;
-        history.meeting.kept_stiffness = if whole { next as f32 } else { 0.0 };
+        history.share = history.share.max((next / kept).min(1.0));
+        history.meeting.kept_stiffness = if alone { next as f32 } else { 0.0 };
         history.unloaded.offset += closed * ((kept / next).min(1.0) - 1.0);
         next / now
     }

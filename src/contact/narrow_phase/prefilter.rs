@@ -141,14 +141,14 @@ impl Prefilter<'_> {
         let at = batch.near_sides.map(|k| k as usize);
         let rest = at.map(|k| self.nearest.rest[k]);
         let near = less(lanes, best.gap - lanes.load(&rest), lanes.splat(self.rule.reach));
-        let enters = near & self.is_outside(lanes, nodes, best.tangent);
+        let is_outside = self.is_outside(lanes, nodes, best.tangent);
         let is_over = self.is_over(lanes, best);
         let mut edge = [0.0; LANES];
         lanes.store(which, &mut edge);
         for (lane, k) in at.into_iter().enumerate() {
             self.nearest.edge[k] = edge[lane] as u32;
-            let is_considered = self.nearest.may_enter[k] | is_over >> lane & 1;
-            self.nearest.may_enter[k] = is_considered & enters >> lane & 1;
+            let is_held = self.nearest.may_enter[k];
+            self.nearest.may_enter[k] = near >> lane & 1 & (is_held | is_over >> lane & is_outside >> lane & 1);
         }
     }
 

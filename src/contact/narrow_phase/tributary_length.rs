@@ -20,7 +20,7 @@ pub(super) struct Tributary {
     /// Share of its strength that the contact has.
     pub share: f64,
     /// Whether it shares its lengths with no other contact.
-    pub whole: bool,
+    pub alone: bool,
 }
 
 /// Lengths of the node segments that face a side (m), as far as they count.
@@ -49,8 +49,8 @@ impl NarrowPhase<'_> {
         let (length, bonded) = ((0.5 * (flush + at_ends * oblique)).max(least), (0.5 * flush).max(least));
         let penalty = length.max(stiffness_floor * span * share);
         let at_corner = self.share_at_corner(node, candidate);
-        let whole = share == 1.0 && at_corner == 1.0;
-        Tributary { length: length * at_corner, bonded: bonded * at_corner, penalty: penalty * at_corner, share, whole }
+        let alone = at_corner == 1.0;
+        Tributary { length: length * at_corner, bonded: bonded * at_corner, penalty: penalty * at_corner, share, alone }
     }
 
     /// Node segments that end at a node and face the edge, as far as they lie over its node segment; those along the

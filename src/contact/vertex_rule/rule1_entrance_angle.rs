@@ -13,7 +13,8 @@
 //!
 //! The rock faces the edge if it is a corner of less than half a turn, or if the way from the previous node to the next
 //! one runs against the edge (up to 10°), as the boundaries of two bodies do that lie on each other. The tip of a
-//! closed crack faces no edge: there is rock all round it.
+//! closed crack faces no edge: there is rock all round it. A block that turns does not end a contact that carries
+//! force: its neighbours may then lie inside.
 
 use super::{ContactCandidate, VertexRule, right_of};
 
@@ -26,6 +27,8 @@ impl VertexRule<'_> {
         let chord = frame.to[1] - frame.to[0];
         let runs_against = || -chord.dot(&candidate.tangent) > -sine * chord.norm();
         let is_crack_tip = || !self.boundary.nodes.convex[candidate.node] && frame.turns_back(sine);
-        is_outside(0) && is_outside(1) && (frame.is_convex(sine) || runs_against()) && !is_crack_tip()
+        (candidate.is_held || is_outside(0) && is_outside(1))
+            && (frame.is_convex(sine) || runs_against())
+            && !is_crack_tip()
     }
 }
