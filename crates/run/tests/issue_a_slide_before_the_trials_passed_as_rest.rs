@@ -1,17 +1,13 @@
 //! A slope with F < 1 that slid in its static stage until other rock stopped it passed as a slope at rest: its factor
 //! of safety was that of the debris, 1.858 instead of 0.775.
 
-use std::path::Path;
-
-use enmm::model::case::{Case, Pictures};
-use enmm_io::{LoadedCase, load_case};
-use enmm_run::{RunOptions, run};
+use crate::quiet_run::{example, quiet_run};
+use enmm::model::case::Case;
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
 /// The plane slide of the examples without water, and with less strength than it needs.
 fn weak_slide([friction_deg, cohesion]: [f64; 2]) -> Case {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/cases/plane_slide.toml");
-    let mut case = load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
+    let mut case = example("plane_slide.toml");
     let plane = case.joint_laws.get_mut("plane").expect("the law of the plane");
     (plane.friction_deg, plane.cohesion) = (friction_deg, cohesion);
     case.water = None;
@@ -37,11 +33,7 @@ fn a_run_warns_of_a_slide_in_a_static_stage() {
     let mut case = weak_slide([28.0, 2e3]);
     case.stages.truncate(1);
     case.bolts.clear();
-    (case.output.frames, case.output.pictures) = (false, Pictures::Usual(false));
-    let folder = tempfile::tempdir().expect("a folder");
-    let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
-    let loaded = LoadedCase::of(case, "case").expect("a case");
-    let summary = run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    let summary = quiet_run(case, &mut ());
     assert!(summary.warnings.iter().any(|warning| warning.contains("rock slid until other rock stopped it")));
 }
 

@@ -7,6 +7,7 @@ mod history;
 mod issue_a_block_on_a_joint_was_in_free_flight;
 mod issue_a_slide_before_the_trials_passed_as_rest;
 mod issue_history_did_not_sum_to_its_residual;
+mod quiet_run;
 #[path = "../../picture/tests/sample.rs"]
 mod sample;
 mod time_left;

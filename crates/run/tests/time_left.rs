@@ -1,10 +1,8 @@
 //! The simulated time that a run expects to need is right within a factor of 1.5 after the first tenth of its steps.
 
-use std::path::Path;
-
 use crate::extent::by_extent;
-use enmm::model::case::Pictures;
-use enmm_run::{Observer, RunOptions, RunProgress, run};
+use crate::quiet_run::{example, quiet_run};
+use enmm_run::{Observer, RunProgress};
 
 /// Simulated time at each step, and that which was expected to be left.
 #[derive(Default)]
@@ -18,13 +16,8 @@ impl Observer for Record {
 
 /// Expected over true time left after a tenth of the steps of a case.
 fn ratio_after_a_tenth(case: &str) -> f64 {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/cases").join(case);
-    let mut loaded = enmm_io::load_case(&path).unwrap_or_else(|error| panic!("{case}: {error}"));
-    (loaded.case.output.frames, loaded.case.output.pictures) = (false, Pictures::Usual(false));
-    let folder = tempfile::tempdir().expect("a folder");
-    let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
     let mut record = Record::default();
-    run(&loaded, &options, &mut record).unwrap_or_else(|error| panic!("{case}: {error}"));
+    quiet_run(example(case), &mut record);
     let (time, expected) = record.0[record.0.len() / 10];
     let end = record.0.last().expect("steps").0;
     expected.unwrap_or_else(|| panic!("{case}: nothing is expected after a tenth")) / (end - time)

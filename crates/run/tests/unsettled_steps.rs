@@ -1,20 +1,13 @@
 //! A run warns of a stage whose open–close iteration often ends unsettled.
 
-use std::path::Path;
-
-use enmm::model::case::Pictures;
-use enmm_run::{RunOptions, run};
+use crate::quiet_run::{example, quiet_run};
 
 /// Unsettled steps and the warnings of them in the first stage of the plane slide, with so many sweeps a step.
 fn unsettled(sweeps_max: u32) -> (u64, Vec<String>) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/cases/plane_slide.toml");
-    let mut loaded = enmm_io::load_case(&path).unwrap_or_else(|error| panic!("{error}"));
-    loaded.case.stages.truncate(1);
-    (loaded.case.output.frames, loaded.case.output.pictures) = (false, Pictures::Usual(false));
-    loaded.case.solver.sweeps_max = sweeps_max;
-    let folder = tempfile::tempdir().expect("a folder");
-    let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
-    let summary = run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    let mut case = example("plane_slide.toml");
+    case.stages.truncate(1);
+    case.solver.sweeps_max = sweeps_max;
+    let summary = quiet_run(case, &mut ());
     let of_them = |warning: &String| warning.contains("did not settle");
     (summary.open_close.unsettled, summary.warnings.into_iter().filter(of_them).collect())
 }
