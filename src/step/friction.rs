@@ -60,7 +60,7 @@ fn find_faces(contacts: &[VertexEdge], delay: Option<FrictionDelay>, FaceBuffers
         let face = &mut faces[*slot as usize];
         face.age = face.age.max(history.meeting.age);
         face.touches |= contact.gap < hop;
-        face.strikes |= history.meeting.kept_stiffness > 0.0;
+        face.strikes |= !contact.fresh && history.meeting.kept_stiffness > 0.0;
         face.felt += history.felt;
         face.length += if history.felt > 0.0 { contact.length } else { 0.0 };
     }
