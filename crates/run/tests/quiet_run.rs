@@ -12,7 +12,7 @@ pub fn example(name: &str) -> Case {
     load_case(&path).unwrap_or_else(|error| panic!("{name}: {error}")).case
 }
 
-/// What a run says at its end.
+/// Summary of the run of a case.
 pub fn quiet_run(mut case: Case, observer: &mut dyn Observer) -> Summary {
     (case.output.frames, case.output.pictures) = (false, Pictures::Usual(false));
     let folder = tempfile::tempdir().expect("a folder");
