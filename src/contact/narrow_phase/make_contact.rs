@@ -55,7 +55,7 @@ impl NarrowPhase<'_> {
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
-        let Tributary { length, bonded, penalty, share, alone } = self.tributary(node, candidate);
+        let Tributary { length, bonded, penalty, share, keeps } = self.tributary(node, candidate);
         let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law: self.law(node, edge) };
         if self.softens {
             bond = self.bond(candidate, bond);
@@ -72,7 +72,7 @@ impl NarrowPhase<'_> {
         if let Some(masses) = self.impacts {
             let blocks = [point, edge].map(|point| boundary.block[point]);
             let mass = 1.0 / (masses[blocks[0].index()] + masses[blocks[1].index()]);
-            let kept = self.keep_stiffness(candidate.gap, (stiffness[0], alone), mass, &mut history);
+            let kept = self.keep_stiffness(candidate.gap, (stiffness[0], keeps), mass, &mut history);
             stiffness = stiffness.map(|k| k * kept);
         }
         history.unloaded.leave(candidate.gap);
@@ -106,9 +106,8 @@ impl NarrowPhase<'_> {
     #[cold]
     #[inline(never)]
     fn bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
-        let holds = |known: u32| self.rule.history[known as usize].intact;
-        let held = candidate.held.filter(|&known| holds(known)).and_then(|known| self.bonds.get(known as usize));
-        if let Some(bond) = held.filter(|bond| bond.lengths[0] > 0.0) {
+        let held = candidate.held.map(|known| known as usize).filter(|&k| self.rule.history[k].intact);
+        if let Some(bond) = held.and_then(|k| self.bonds.get(k)).filter(|bond| bond.lengths[0] > 0.0) {
             return *bond;
         }
         if self.first { self.first_bond(candidate, new) } else { new }
@@ -162,10 +161,10 @@ impl NarrowPhase<'_> {
 
     /// Factor on the stiffness (N/m per metre) of a contact at a geometric gap (m): it keeps that of its first touch
     /// for the time in which a mass (kg/m) swings on it once, so that an impact has a potential, and lets it go in as
-    /// much time again, or at once where it begins to share its length with another one (Eq. 86). The force does not
-    /// grow by that, for which it gets an allowance.
+    /// much time again, or at once where a corner begins to share its length with another one (Eq. 86). The force does
+    /// not grow by that, for which it gets an allowance.
     #[inline(always)]
-    fn keep_stiffness(&self, gap: f64, (now, alone): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
+    fn keep_stiffness(&self, gap: f64, (now, keeps): (f64, bool), mass: f64, history: &mut ContactHistory) -> f64 {
         let (age, kept) = (f64::from(history.meeting.age), f64::from(history.meeting.kept_stiffness));
         let closed = gap + history.unloaded.offset - history.unloaded.rest;
         let swing = TAU * (mass / if kept > 0.0 { kept } else { now }).sqrt();
@@ -174,19 +173,19 @@ impl NarrowPhase<'_> {
             return 1.0;
         }
         if kept == 0.0 {
-            if closed < 0.0 && age < swing && alone && history.share == 1.0 {
+            if closed < 0.0 && age < swing && keeps && history.share == 1.0 {
                 history.meeting.kept_stiffness = now as f32;
             }
             return 1.0;
         }
-        if age < swing && alone {
+        if age < swing && keeps {
             history.share = 1.0;
             return kept / now;
         }
-        let share = if alone { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
+        let share = if keeps { (self.dt / (2.0 * swing - age)).min(1.0) } else { 1.0 };
         let next = kept + (now - kept) * share;
         history.share = history.share.max((next / kept).min(1.0));
-        history.meeting.kept_stiffness = if alone { next as f32 } else { 0.0 };
+        history.meeting.kept_stiffness = if keeps { next as f32 } else { 0.0 };
         history.unloaded.offset += closed * ((kept / next).min(1.0) - 1.0);
         next / now
     }

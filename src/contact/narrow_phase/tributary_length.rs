@@ -19,8 +19,8 @@ pub(super) struct Tributary {
     pub penalty: f64,
     /// Share of its strength that the contact has.
     pub share: f64,
-    /// Whether it shares its lengths with no other contact.
-    pub alone: bool,
+    /// Whether it keeps its stiffness through an impact: all but a corner that shares its lengths with another one.
+    pub keeps: bool,
 }
 
 /// Lengths of the node segments that face a side (m), as far as they count.
@@ -43,14 +43,13 @@ impl NarrowPhase<'_> {
         let at_ends = ramp(start.min(finish));
         let Facing { flush, oblique } = self.facing(node, candidate);
         let share = at_ends.max(ramp(flush));
-        let distance = self.rule.frames.node(node).distance;
-        let span = 0.5 * (distance[0] + distance[1]);
+        let span = 0.5 * self.rule.frames.node(node).distance.iter().sum::<f64>();
         let least = length_floor * span;
         let (length, bonded) = ((0.5 * (flush + at_ends * oblique)).max(least), (0.5 * flush).max(least));
         let penalty = length.max(stiffness_floor * span * share);
         let at_corner = self.share_at_corner(node, candidate);
-        let alone = at_corner == 1.0;
-        Tributary { length: length * at_corner, bonded: bonded * at_corner, penalty: penalty * at_corner, share, alone }
+        let keeps = at_corner == 1.0 || !self.rule.boundary.nodes.convex[node];
+        Tributary { length: length * at_corner, bonded: bonded * at_corner, penalty: penalty * at_corner, share, keeps }
     }
 
     /// Node segments that end at a node and face the edge, as far as they lie over its node segment; those along the
@@ -77,16 +76,11 @@ impl NarrowPhase<'_> {
             }
         };
         if q > p {
-            let beyond =
-                if high > 0.0 { high * self.reach_beyond(boundary.nodes.next[after], to, q, candidate) } else { 0.0 };
+            let beyond = self.reach_beyond(high, boundary.nodes.next[after], [to, q], candidate);
             add(over(q) + beyond, q - p, frame.distance[0], candidate.lengths[1]);
         }
         if r < p {
-            let beyond = if low > 0.0 {
-                low * self.reach_beyond(boundary.nodes.previous[before], from, r, candidate)
-            } else {
-                0.0
-            };
+            let beyond = self.reach_beyond(low, boundary.nodes.previous[before], [from, r], candidate);
             add(over(r) + beyond, p - r, frame.distance[1], candidate.lengths[0]);
         }
         facing
@@ -102,10 +96,7 @@ impl NarrowPhase<'_> {
         }
         let is_inner = |k: usize| match k {
             0 => boundary.sides.ends[candidate.side][0].edge != boundary.nodes.point[before],
-            _ => {
-                let after = boundary.nodes.point[boundary.nodes.next[before]];
-                boundary.side[after] == candidate.side
-            }
+            _ => boundary.side[boundary.nodes.point[boundary.nodes.next[before]]] == candidate.side,
         };
         [0, 1].map(|k| {
             let is_near = distances[k] < band && is_inner(k);
@@ -113,12 +104,15 @@ impl NarrowPhase<'_> {
         })
     }
 
-    /// Length (m) of a node segment from its end at `at` that the part up to `target` covers, along the candidate's
-    /// edge.
+    /// Share of the length (m) of a node segment from its end at `at` that the part up to `target` covers, along the
+    /// candidate's edge.
     #[inline(always)]
-    fn reach_beyond(&self, far: NodeId, at: f64, target: f64, candidate: &ContactCandidate) -> f64 {
+    fn reach_beyond(&self, share: f64, far: NodeId, [at, target]: [f64; 2], candidate: &ContactCandidate) -> f64 {
+        if share == 0.0 {
+            return 0.0;
+        }
         let far = self.rule.position(far).dot(&candidate.tangent);
-        if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
+        share * if target > at { (target.min(far) - at).max(0.0) } else { (at - target.max(far)).max(0.0) }
     }
 
     /// 1 inside a side; at its convex ends ½ for a corner, since the corner there is a contact as well, and 0 for an

@@ -24,6 +24,7 @@
 //! - Faces that lie on each other (within 10°) do not exclude each other: p leaves through s.
 //! - Where the corners no longer overlap, s is refused, unless its contact carries force or q lies under p's own face.
 //!   A contact that carries force stays so beyond the end of its side; the other facet may still take over from it.
+//! - A node that is no corner holds its side in an impact, and beyond the end of it while the corner there strikes too.
 //! - A reflex end refuses only a node whose foot lies past it and which is not over the edge.
 //!
 //! The compression along a direction is the largest of those of the facet's own contact and of all other contacts of p
@@ -58,6 +59,9 @@ impl VertexRule<'_> {
     /// one of the ends refuses the candidate.
     #[inline(always)]
     pub(super) fn lengths_at_ends(&self, candidate: &ContactCandidate) -> Option<[f64; 2]> {
+        if self.is_struck(candidate) {
+            return Some([f64::INFINITY; 2]);
+        }
         let p = self.position(candidate.node);
         let tolerance = self.corner_tolerance(candidate);
         let mut lengths = [f64::INFINITY; 2];
@@ -86,6 +90,21 @@ impl VertexRule<'_> {
         Some(lengths)
     }
 
+    /// Whether an impact holds the candidate: its foot is on the side, or the corner that it has passed strikes as well,
+    /// and would take over with a spring of its own.
+    #[inline(always)]
+    fn is_struck(&self, candidate: &ContactCandidate) -> bool {
+        let strikes = |known: u32| self.history[known as usize].meeting.kept_stiffness > 0.0;
+        if !candidate.is_held || self.boundary.nodes.convex[candidate.node] || !candidate.held.is_some_and(strikes) {
+            return false;
+        }
+        let end = if candidate.along < 0.0 { End::Start } else { End::Finish };
+        let corner = self.boundary.node_before[self.boundary.sides.ends[candidate.side][end as usize].point];
+        let sides = self.boundary.sides_of_node(candidate.node);
+        let mut corners = self.cache.of_nodes([corner.index(), corner.index() + 1]);
+        candidate.beyond == 0.0 || corners.any(|k| sides.contains(&self.history[k].side) && strikes(k as u32))
+    }
+
     /// Length (m) along the side before a convex `end` over which both blocks overlap; infinite where the contact is
     /// kept without overlap. `None` where the corners have separated, or the other facet is less deep.
     fn length_at_end(&self, candidate: &ContactCandidate, p: Point, end: End) -> Option<f64> {
@@ -102,7 +121,9 @@ impl VertexRule<'_> {
             return Some(facet.depth / slope);
         }
         let q = self.boundary.node_before[self.boundary.sides.ends[candidate.side][end as usize].point];
-        let compression = |closure: f64, out: Vector| closure.max(self.closure_of_others(candidate.node, q, out));
+        let [sides_of_p, sides_of_q] = [candidate.node, q].map(|node| self.boundary.sides_of_node(node));
+        let of_p = |out: Vector| self.closure_along(candidate.node, out, sides_of_q);
+        let compression = |closure: f64, out| closure.max(of_p(out)).max(self.closure_along(q, -out, sides_of_p));
         let unloaded = facet.depth - compression(self.closure_with(facet.corner, facet.side), facet.out);
         let can_hold = facet.inset >= -tolerance || self.carries(facet.corner, facet.side);
         if facet.is_flush || !can_hold {
@@ -137,13 +158,6 @@ impl VertexRule<'_> {
         let (corner, side) = (boundary.node_before[point], boundary.sides_of_node(node)[end as usize]);
         let (inset, depth) = ((q - p).dot(&to_neighbour) / distance, (q - p).dot(&-out_of_own));
         Facet { corner, side, out: -out_of_own, depth, inset, is_flush, is_under }
-    }
-
-    /// Distance (m) by which p and q separate along a direction out of q's block when the springs of their other
-    /// contacts are unloaded.
-    fn closure_of_others(&self, p: NodeId, q: NodeId, out: Vector) -> f64 {
-        let [sides_of_p, sides_of_q] = [p, q].map(|node| self.boundary.sides_of_node(node));
-        self.closure_along(p, out, sides_of_q).max(self.closure_along(q, -out, sides_of_p))
     }
 
     /// Whether a contact that carries force is kept beyond an end of its side.
