@@ -90,8 +90,8 @@ impl VertexRule<'_> {
         Some(lengths)
     }
 
-    /// Whether an impact holds the candidate: its foot is on the side, or the corner that it has passed strikes as well,
-    /// and would take over with a spring of its own.
+    /// Whether an impact holds the candidate: its foot is on the side, or the corner that it has passed strikes too,
+    /// which would take over with a spring of its own.
     #[inline(always)]
     fn is_struck(&self, candidate: &ContactCandidate) -> bool {
         let strikes = |known: u32| self.history[known as usize].meeting.kept_stiffness > 0.0;
