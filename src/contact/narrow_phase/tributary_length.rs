@@ -37,10 +37,9 @@ impl NarrowPhase<'_> {
     /// springs unloaded: only the part of a face that lies against the other one carries force.
     #[inline(always)]
     pub(super) fn tributary(&self, node: NodeId, candidate: &ContactCandidate) -> Tributary {
-        let [start, finish] = candidate.lengths;
         let EntranceRule { ledge, length_floor, stiffness_floor, .. } = self.rule.constants;
         let ramp = |overlap: f64| (overlap / (ledge * self.rule.size) - 1.0).clamp(0.0, 1.0);
-        let at_ends = ramp(start.min(finish));
+        let at_ends = ramp(candidate.lengths[0].min(candidate.lengths[1]));
         let Facing { flush, oblique } = self.facing(node, candidate);
         let share = at_ends.max(ramp(flush));
         let span = 0.5 * self.rule.frames.node(node).distance.iter().sum::<f64>();
@@ -120,8 +119,7 @@ impl NarrowPhase<'_> {
     /// fades with that overlap.
     #[inline(always)]
     fn share_at_corner(&self, node: NodeId, candidate: &ContactCandidate) -> f64 {
-        let EntranceRule { held_beyond, share_floor, .. } = self.rule.constants;
-        let band = held_beyond * self.rule.size;
+        let band = self.rule.constants.held_beyond * self.rule.size;
         let least = if self.rule.boundary.nodes.convex[node] { CORNER_SHARE } else { 0.0 };
         let mut share = 1.0f64;
         for (end, within) in [(End::Start, candidate.along), (End::Finish, candidate.length - candidate.along)] {
@@ -133,6 +131,6 @@ impl NarrowPhase<'_> {
                 share = share.min(least + (1.0 - least) * within / band);
             }
         }
-        share.clamp(share_floor, 1.0)
+        share.clamp(self.rule.constants.share_floor, 1.0)
     }
 }

@@ -98,11 +98,13 @@ impl VertexRule<'_> {
         if !candidate.is_held || self.boundary.nodes.convex[candidate.node] || !candidate.held.is_some_and(strikes) {
             return false;
         }
-        let end = if candidate.along < 0.0 { End::Start } else { End::Finish };
-        let corner = self.boundary.node_before[self.boundary.sides.ends[candidate.side][end as usize].point];
-        let sides = self.boundary.sides_of_node(candidate.node);
-        let mut corners = self.cache.of_nodes([corner.index(), corner.index() + 1]);
-        candidate.beyond == 0.0 || corners.any(|k| sides.contains(&self.history[k].side) && strikes(k as u32))
+        let corner_strikes = || {
+            let end = self.boundary.sides.ends[candidate.side][usize::from(candidate.along > 0.0)];
+            let (corner, sides) = (self.boundary.node_before[end.point], self.boundary.sides_of_node(candidate.node));
+            let mut known = self.cache.of_nodes([corner.index(), corner.index() + 1]);
+            known.any(|k| sides.contains(&self.history[k].side) && strikes(k as u32))
+        };
+        candidate.beyond == 0.0 || corner_strikes()
     }
 
     /// Length (m) along the side before a convex `end` over which both blocks overlap; infinite where the contact is
