@@ -239,6 +239,13 @@ fn links_between_documents_resolve() {
 }
 
 #[test]
+fn files_of_modules_exist() {
+    let files = repository();
+    let exists = |path: &str| files.iter().any(|file| file.path == path);
+    hold(files.iter().filter(|file| file.is(".rs")).flat_map(|file| module_problems(file, &exists)).collect());
+}
+
+#[test]
 fn every_page_is_in_the_summary_of_the_site() {
     let files = repository();
     let summary = files.iter().find(|file| file.path == SUMMARY).expect(SUMMARY);
@@ -550,6 +557,14 @@ fn link_problems(file: &File, exists: &dyn Fn(&str) -> bool) -> Vec<String> {
     };
     let links = links(&file.text).into_iter().filter(|(_, target)| dead(target));
     links.map(|(line, target)| format!("{}:{line}: link to {target} leads nowhere", file.path)).collect()
+}
+
+/// Modules whose file is not where their attribute says: no test builds programs outside the workspace.
+fn module_problems(file: &File, exists: &dyn Fn(&str) -> bool) -> Vec<String> {
+    let path = |line: &str| Some(join(&file.path, line.strip_prefix("#[path = \"")?.split('"').next()?));
+    let named = numbered(&file.text).filter_map(|(k, line)| Some((k, path(line)?)));
+    let lost = named.filter(|(_, path)| !exists(path));
+    lost.map(|(k, path)| format!("{}:{k}: there is no {path}", file.path)).collect()
 }
 
 /// Pages of the site that its table of contents does not list.
@@ -1056,6 +1071,14 @@ fn links_rule_is_seen_failing() {
     assert_eq!(dead("README.md", "![a](docs/absent.png)"), 1);
     assert_eq!(dead("docs/a.md", "[a](theory.md) [b](../README.md) [c](README.md)"), 1);
     assert_eq!(dead("README.md", "```\n[a](absent.md)\n```"), 0);
+}
+
+#[test]
+fn module_rule_is_seen_failing() {
+    let exists = |path: &str| path == "tests/common/clock.rs";
+    let lost = |text| module_problems(&file("crates/a/tests/main.rs", text), &exists).len();
+    assert_eq!(lost("#[path = \"../../../tests/common/clock.rs\"]\nmod clock;"), 0);
+    assert_eq!(lost("#[path = \"../../common/clock.rs\"]\nmod clock;"), 1);
 }
 
 #[test]

@@ -25,13 +25,15 @@ pub struct Block {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Answer: seconds for a simulated second, and where the corners of each block came to be.
+/// Answer: seconds and steps for a simulated second, or its substeps if steps have them, and where the corners of each
+/// block came to be.
 #[derive(serde::Serialize)]
 pub struct Answer {
     pub program: String,
     pub settings: String,
     pub seconds: f64,
     pub elements: Option<usize>,
+    pub steps: Option<f64>,
     pub contacts: Option<usize>,
     pub blocks: Vec<Option<Vec<[f64; 2]>>>,
 }

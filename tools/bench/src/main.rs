@@ -28,6 +28,9 @@ struct Arguments {
     /// Rounds of the comparison.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     rounds: u16,
+    /// Simulated time of slopes (s). Over 10 000 blocks a whole second takes hours.
+    #[arg(long, default_value_t = 1.0, value_name = "SECONDS", value_parser = duration)]
+    duration: f64,
     /// Folder of the sources of the other programs.
     #[arg(long, value_name = "DIR", default_value = "tools/bench/peers")]
     peer_sources: PathBuf,
@@ -57,7 +60,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let models = models(&arguments.models, &peers)?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     let (rounds, sources) = (usize::from(arguments.rounds), arguments.peer_sources.clone());
-    let options = PeerOptions { models, peers, rounds, sources, builds: target.join("peers") };
+    let (duration, builds) = (arguments.duration, target.join("peers"));
+    let options = PeerOptions { models, peers, rounds, duration, sources, builds };
     let report = compare(&options, &mut |what| eprintln!("{what} …")).map_err(|error| error.to_string())?;
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
     let origin = Origin { label: arguments.label.clone(), command: format!("cargo xtask bench {command}") };
@@ -70,6 +74,13 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         println!("{}", peers_markdown(&report, &origin).trim_end());
     }
     Ok(())
+}
+
+/// A simulated time: a sixtieth of a second is a step of the other programs.
+fn duration(text: &str) -> Result<f64, String> {
+    let least = 1.0 / 60.0;
+    let time = text.parse::<f64>().map_err(|error| error.to_string())?;
+    (least..=60.0).contains(&time).then_some(time).ok_or_else(|| format!("it must be {least:.4} to 60 s"))
 }
 
 fn peers(names: &[String]) -> Result<Vec<Peer>, String> {

@@ -12,16 +12,19 @@ const INTRODUCTION: &str = "\
 Every program simulates the same polygons of blocks from the same first instant, on one thread, turn by turn in rounds
 with the others; who is first changes from round to round. Times are of the steps without building the model: wall time,
 or the processor's time of the thread where that is less; a pass over elements counts with its quickest time. The ratio
-is that of one round: how many times as long as enmm a program took. Way is the mean displacement of the centroids of
-the blocks; overlaps are those of the polygons of the corners, after the last step, in parts of the mesh size.";
+is that of one round: how many times as long as enmm a program took. A step is a substep where steps have
+them. Way is the mean displacement of the centroids of the blocks; overlaps are those of the polygons of the corners,
+after the last step, in parts of the mesh size.";
 
-const SLOPE_HEAD: [&str; 10] = [
+const SLOPE_HEAD: [&str; 12] = [
     "model",
     "program",
     "blocks",
     "elements",
     "contacts",
     "s per simulated s",
+    "steps per simulated s",
+    "ms per step",
     "times enmm",
     "way (m)",
     "mean overlap (% of mesh size)",
@@ -70,6 +73,8 @@ fn slope_row(compared: &Compared, timed: &Timed) -> Vec<String> {
         count(timed.elements),
         count(timed.contacts),
         digits(timed.median()),
+        timed.steps.map_or_else(none, digits),
+        timed.steps.map_or_else(none, |steps| digits(1e3 * timed.median() / steps)),
         ratio(compared, timed),
         outcome.map_or_else(none, |outcome| digits(outcome.way)),
         outcome.map_or_else(none, |outcome| share(outcome.overlap_mean)),
@@ -119,6 +124,7 @@ mod tests {
             seconds: seconds.into(),
             elements,
             contacts: Some(7),
+            steps: Some(1000.0),
             outcome,
         };
         let outcome = Outcome { blocks: 500, way: 0.93, overlap_mean: 0.001, overlap_max: 0.02 };
@@ -127,7 +133,7 @@ mod tests {
             size: Some(2.0),
             programs: vec![
                 timed("enmm 1", [1.0, 2.0, 4.0], Some(2022), Some(outcome)),
-                timed("rigid 2", [3.0, 4.0, 20.0], None, Some(outcome)),
+                timed("box 2", [3.0, 4.0, 20.0], None, Some(outcome)),
             ],
         };
         let continuum = Compared {
@@ -140,8 +146,8 @@ mod tests {
         let report = PeerReport { rounds: 3, duration: 1.0, models, left_out, ..PeerReport::default() };
         let text = peers_markdown(&report, &Origin { label: "today".to_owned(), command: "enmm bench".to_owned() });
         for line in [
-            "| slope_500x4 | enmm 1 | 500 | 2022 | 7 | 2.00 | – | 0.930 | 0.0500 | 1.00 |",
-            "| slope_500x4 | rigid 2 | 500 | – | 7 | 4.00 | **3.00** (2.00–5.00) | 0.930 | 0.0500 | 1.00 |",
+            "| slope_500x4 | enmm 1 | 500 | 2022 | 7 | 2.00 | 1000 | 2.00 | – | 0.930 | 0.0500 | 1.00 |",
+            "| slope_500x4 | box 2 | 500 | – | 7 | 4.00 | 1000 | 4.00 | **3.00** (2.00–5.00) | 0.930 | 0.0500 | 1.00 |",
             "| continuum_10000 | enmm 1 | 9999 | 400 | – |",
             "| enmm 1 | settings of enmm 1 |",
             "| third: why |",

@@ -17,8 +17,6 @@ use super::scene::{Outcome, Placed, Scene};
 /// Models that are compared when none is named.
 pub const COMPARED: [Model; 4] =
     [Model::Slope(500, 4), Model::Slope(2_000, 4), Model::Continuum(10_000), Model::Continuum(100_000)];
-/// Simulated time (s) of a slope.
-const DURATION: f64 = 1.0;
 /// Wall time (s) for the element passes of this program in a round.
 const SECONDS: f64 = 1.0;
 /// Element updates that the figure of a continuum is for.
@@ -83,6 +81,8 @@ pub struct PeerOptions {
     pub peers: Vec<Peer>,
     /// Rounds: in each, every program runs once.
     pub rounds: usize,
+    /// Simulated time (s) of slopes.
+    pub duration: f64,
     /// Folder of the sources of the programs.
     pub sources: PathBuf,
     /// Folder for what is built.
@@ -147,6 +147,8 @@ pub struct Timed {
     pub elements: Option<usize>,
     /// Contacts at the end.
     pub contacts: Option<usize>,
+    /// Steps of a simulated second, or substeps if steps have them.
+    pub steps: Option<f64>,
     /// Outcome of the slope.
     pub outcome: Option<Outcome>,
 }
@@ -155,9 +157,10 @@ impl Timed {
     /// Adds a round.
     fn add(&mut self, answer: Answer, task: &Task) -> Result<(), String> {
         self.outcome = task.outcome(&answer)?;
-        let Answer { program, settings, seconds, elements, contacts, .. } = answer;
+        let Answer { program, settings, seconds, elements, contacts, steps, .. } = answer;
         self.seconds.push(seconds);
-        (self.program, self.settings, self.elements, self.contacts) = (program, settings, elements, contacts);
+        (self.program, self.settings, self.elements) = (program, settings, elements);
+        (self.contacts, self.steps) = (contacts, steps);
         Ok(())
     }
 
@@ -188,6 +191,7 @@ struct Answer {
     seconds: f64,
     elements: Option<usize>,
     contacts: Option<usize>,
+    steps: Option<f64>,
     #[serde(default)]
     blocks: Vec<Placed>,
 }
@@ -217,7 +221,7 @@ fn compare_here(options: &PeerOptions, begin: &mut dyn FnMut(&str)) -> Result<Pe
         version: engine_version().to_owned(),
         machine: Machine::here(false),
         rounds: options.rounds,
-        duration: DURATION,
+        duration: options.duration,
         ..PeerReport::default()
     };
     let mut ready = Vec::new();
@@ -249,9 +253,9 @@ enum Task {
 
 impl Task {
     /// The task of a model; none for one that no program takes.
-    fn of(model: &Model) -> Result<Option<Self>, BenchError> {
+    fn of(model: &Model, duration: f64) -> Result<Option<Self>, BenchError> {
         Ok(match model {
-            Model::Slope(..) => Scene::of(&model.build()?, DURATION).map(Box::new).map(Self::Slope),
+            Model::Slope(..) => Scene::of(&model.build()?, duration).map(Box::new).map(Self::Slope),
             Model::Continuum(elements) => Some(Self::Elements(*elements)),
             Model::Resting | Model::Failing => None,
         })
@@ -274,7 +278,8 @@ impl Task {
             let options = BenchOptions { models, seconds, threads: None, limits: false, first_second: false };
             let found = measure(model, &options, &Machine::default())?;
             let (seconds, elements) = (UPDATES / found.elements_per_second, Some(found.elements));
-            return Ok(Answer { program, settings, seconds, elements, contacts: None, blocks: Vec::new() });
+            let (contacts, steps, blocks) = (None, None, Vec::new());
+            return Ok(Answer { program, settings, seconds, elements, contacts, steps, blocks });
         };
         let mut simulation = model.build()?;
         let steps = simulation.steps_in(scene.duration);
@@ -286,6 +291,7 @@ impl Task {
             seconds: seconds / scene.duration,
             elements: Some(sizes(&simulation).elements),
             contacts: Some(simulation.state().contacts.len()),
+            steps: Some(steps as f64 / scene.duration),
             blocks: scene.placed(&simulation),
         })
     }
@@ -306,7 +312,7 @@ fn rounds(
     begin: &mut dyn FnMut(&str),
     left_out: &mut Vec<String>,
 ) -> Result<Option<Compared>, PeerError> {
-    let Some(task) = Task::of(model)? else { return Ok(None) };
+    let Some(task) = Task::of(model, options.duration)? else { return Ok(None) };
     let argument = task.argument(options.builds.join(format!("{model}.json")))?;
     // The first is this program; a program that failed has no results any more.
     let mut results: Vec<Option<Timed>> = vec![Some(Timed::default()); others.len() + 1];
@@ -403,7 +409,8 @@ mod tests {
 
     fn options(sources: &Path, builds: PathBuf) -> PeerOptions {
         let models = vec![Model::Slope(20, 4), Model::Resting];
-        PeerOptions { models, peers: Peer::ALL.to_vec(), rounds: 1, sources: sources.to_owned(), builds }
+        let (peers, sources) = (Peer::ALL.to_vec(), sources.to_owned());
+        PeerOptions { models, peers, rounds: 1, duration: 1.0, sources, builds }
     }
 
     #[test]

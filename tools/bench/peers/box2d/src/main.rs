@@ -5,7 +5,7 @@
 //! Box2D counts lengths in 4-byte numbers and takes no polygon below half a centimetre: it leaves such blocks out.
 
 /// The clock that enmm is timed with.
-#[path = "../../../src/clock.rs"]
+#[path = "../../../../../crates/bench/src/clock.rs"]
 #[expect(dead_code, reason = "memory is not compared")]
 mod clock;
 #[path = "../../scene.rs"]
@@ -48,6 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
         seconds: seconds / scene.duration,
         elements: None,
+        steps: Some(STEPS_PER_SECOND * f64::from(SUBSTEPS)),
         contacts: usize::try_from(world.counters().contact_count).ok(),
         blocks: placed.iter().map(now).collect(),
     })

@@ -13,7 +13,7 @@
 //! whole block. Grains thinner than two skins are left out.
 
 /// The clock that enmm is timed with.
-#[path = "../../../src/clock.rs"]
+#[path = "../../../../../crates/bench/src/clock.rs"]
 #[expect(dead_code, reason = "memory is not compared")]
 mod clock;
 #[path = "../../scene.rs"]
@@ -73,6 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
         seconds: seconds / scene.duration,
         elements: Some(elements),
+        steps: Some(parameters.num_solver_iterations as f64 / parameters.dt),
         contacts: Some(contacts),
         blocks,
     })
