@@ -28,7 +28,7 @@ struct Arguments {
     /// Rounds of the comparison.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     rounds: u16,
-    /// Simulated time of slopes (s). Over 10 000 blocks a whole second takes hours.
+    /// Simulated time of slopes (s), in whole sixtieths. A second of 100 000 blocks takes hours.
     #[arg(long, default_value_t = 1.0, value_name = "SECONDS", value_parser = duration)]
     duration: f64,
     /// Folder of the sources of the other programs.
@@ -76,11 +76,12 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// A simulated time: a sixtieth of a second is a step of the other programs.
+/// A simulated time: a step of the other programs is a sixtieth of a second.
 fn duration(text: &str) -> Result<f64, String> {
-    let least = 1.0 / 60.0;
-    let time = text.parse::<f64>().map_err(|error| error.to_string())?;
-    (least..=60.0).contains(&time).then_some(time).ok_or_else(|| format!("it must be {least:.4} to 60 s"))
+    let steps = 60.0 * text.parse::<f64>().map_err(|error| error.to_string())?;
+    let is_whole = (steps - steps.round()).abs() < 1e-6;
+    let is_valid = is_whole && (1.0..=3600.0).contains(&steps.round());
+    is_valid.then(|| steps.round() / 60.0).ok_or_else(|| "it must be whole sixtieths of a second, 1 to 3600".to_owned())
 }
 
 fn peers(names: &[String]) -> Result<Vec<Peer>, String> {
@@ -101,4 +102,16 @@ fn models(names: &[String], peers: &[Peer]) -> Result<Vec<Model>, String> {
     }
     let read = |name: &String| Model::parse(name).ok_or_else(|| format!("there is no model {name:?}"));
     names.iter().map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_duration_is_whole_steps_of_the_others() {
+        assert_eq!(
+            ["1", "0.05", "0.016666667"].map(|text| super::duration(text).ok()),
+            [1.0, 0.05, 1.0 / 60.0].map(Some)
+        );
+        assert!(["0.06", "0", "61", "nan", "x"].iter().all(|text| super::duration(text).is_err()));
+    }
 }
