@@ -107,6 +107,14 @@ impl Case {
             None => self.stages.iter().position(|stage| stage.kind == StageKind::Dynamic),
         }
     }
+
+    /// Whether a ground motion acts in a stage, by its index.
+    pub fn is_shaken(&self, stage: usize) -> bool {
+        let motions = self.base_motions.iter().map(|motion| &motion.stage);
+        let waves = self.quiets.iter().filter(|quiet| quiet.wave.is_some()).map(|quiet| &quiet.stage);
+        let has_begun = |name: &Option<String>| self.motion_stage(name.as_deref()).is_some_and(|first| first <= stage);
+        self.stages[stage].kind == StageKind::Dynamic && motions.chain(waves).any(has_begun)
+    }
 }
 
 fn horizontal() -> Axes {

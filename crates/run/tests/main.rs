@@ -10,6 +10,7 @@ mod issue_history_did_not_sum_to_its_residual;
 mod quiet_run;
 #[path = "../../picture/tests/sample.rs"]
 mod sample;
+mod shaking;
 mod time_left;
 mod unsettled_steps;
 mod vtu;

@@ -37,6 +37,8 @@ const CHECKPOINT: &str = "checkpoint.enmm";
 const GOOD_STEPS: u64 = 200;
 /// Blocks that a warning names.
 const NAMED: usize = 3;
+/// Least slip (m) that a warning gives, by its digits.
+const SLIP_SHOWN: f64 = 5e-5;
 /// Share of unsettled steps above which a stage is warned of: a few are usual where blocks strike each other.
 const UNSETTLED_SHARE: f64 = 0.01;
 
@@ -412,6 +414,7 @@ impl<'a> Driver<'a> {
 
     fn warn_of_stage(&mut self, converged: bool, restless: &[Restless]) -> Result<(), RunError> {
         self.warn_of_unsettled()?;
+        self.warn_of_shaking()?;
         let stage = self.simulation.stage();
         if stage.kind == StageKind::Static && converged && !restless.is_empty() {
             let name = &stage.name;
@@ -453,6 +456,25 @@ impl<'a> Driver<'a> {
         self.warn(format!(
             "stage {name:?}: the open–close iteration did not settle within {most} in {unsettled} sub-steps of {steps} \
              steps, so that joints may slip or open falsely; compare with a run of shorter steps (solver.{step})"
+        ))
+    }
+
+    /// Warns of joints that have slipped when the ground has shaken: no mesh alone tells how far.
+    fn warn_of_shaking(&mut self) -> Result<(), RunError> {
+        let (case, stage) = (self.simulation.case(), self.simulation.stage());
+        if !case.is_shaken(self.simulation.state().stage as usize) {
+            return Ok(());
+        }
+        let joints = self.joints.now(&self.simulation);
+        let slip = joints.iter().filter(|piece| piece.is_joint).map(|piece| piece.slip.abs()).fold(0.0, f64::max);
+        if slip < SLIP_SHOWN {
+            return Ok(());
+        }
+        let (name, half) = (&stage.name, 0.5 * case.mesh.size);
+        self.warn(format!(
+            "stage {name:?}: joints have slipped by up to {slip:.4} m; how far a shaken slope slips depends on the \
+             mesh, slips of millimetres by several times: compare with a run on half the mesh size (--set \
+             mesh.size={half})"
         ))
     }
 
