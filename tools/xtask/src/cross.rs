@@ -59,7 +59,7 @@ pub struct Quick {
 /// # Errors
 /// When cargo does not start.
 pub fn start_quick(repository: &Repository, platform: &'static Platform) -> Result<Option<Quick>, String> {
-    let purpose = format!("tests for {}", platform.name);
+    let purpose = purpose_of_tests(platform);
     let Some(cross) = platform.cross.as_ref().filter(|cross| is_ready(cross, &purpose)) else { return Ok(None) };
     let runs = has_emulator(cross, &purpose);
     // It yields to the tests beside it.
@@ -93,13 +93,28 @@ pub fn quick(repository: &Repository, quick: Option<Quick>) -> Result<Counts, St
     bits::elsewhere(repository, platform, &place.emulator, &place.compile(FMU_HOST, &[])?)
 }
 
-/// Whether standard library and compiler are there; where rustup and Debian's packages can provide them, they are
-/// installed first. Says what is missing.
-fn is_ready(cross: &Cross, purpose: &str) -> bool {
+/// Installs standard library, compiler and emulator of a platform, where rustup and Debian's packages can provide them.
+pub fn install(platform: &Platform) {
+    let Some(cross) = &platform.cross else { return };
+    let purpose = purpose_of_tests(platform);
+    provide_compiler(cross, &purpose);
+    debian::provide(&purpose, cross.emulator_packages, || cross.has_emulator());
+}
+
+fn purpose_of_tests(platform: &Platform) -> String {
+    format!("tests for {}", platform.name)
+}
+
+fn provide_compiler(cross: &Cross, purpose: &str) {
     if !cross.has_standard_library() {
         succeeds(Command::new("rustup").args(["target", "add", cross.triple]));
     }
     debian::provide(purpose, cross.compiler_package, || cross.has_compiler());
+}
+
+/// Whether standard library and compiler are there, installed where they can be. Says what is missing.
+fn is_ready(cross: &Cross, purpose: &str) -> bool {
+    provide_compiler(cross, purpose);
     cross.missing().map(|missing| println!("SKIPPED {purpose}: {missing}")).is_none()
 }
 

@@ -92,8 +92,7 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     pytest.env("ENMM_RESULTS", &results).env("ENMM_BIN", repository.enmm()).env("ENMM_FMUS", pack(repository)?);
     pytest.env("ENMM_EXAMPLE", repository.program("examples/cosimulation"));
     if share != Share::Usual {
-        provide_drawing(repository);
-        provide_browser();
+        install(repository);
         pytest.env("ENMM_WHEEL", wheel::pack(repository, &HERE)?);
     }
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
@@ -104,14 +103,19 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     Ok(counts)
 }
 
-/// Installs what the test of drawings needs where Debian's packages can be; without it the test skips itself.
+/// Installs programs and libraries that a few tests need, where Debian's packages can be; without them these tests skip
+/// themselves.
+pub fn install(repository: &Repository) {
+    provide_drawing(repository);
+    provide_browser();
+}
+
 fn provide_drawing(repository: &Repository) {
     let load = ["-c", "import ctypes; ctypes.CDLL('libEGL.so.1')"];
     let draws = || venv::command(repository, Packages::All).is_ok_and(|mut python| venv::succeeds(python.args(load)));
     debian::provide(DRAWING_TEST, "libegl1 libgl1-mesa-dri", draws);
 }
 
-/// Installs a Chromium where Debian's packages can be; without one the tests of pages skip themselves.
 fn provide_browser() {
     let found = || BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")));
     debian::provide(BROWSER_TEST, "chromium", found);

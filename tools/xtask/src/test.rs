@@ -26,7 +26,8 @@ const LEFT_OUT: &str = "lints, Windows and ARM, Chromium, rustdoc, the oldest co
 /// The tests of a newcomer and of every commit: they install nothing outside the target folder.
 pub fn usual(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    while_packages_come(repository, || {
+    std::thread::scope(|scope| {
+        scope.spawn(|| venv::prepare(repository, Packages::Usual));
         if take_build(repository, &mut steps) {
             take_usual(repository, &mut steps, None);
         }
@@ -38,8 +39,11 @@ pub fn usual(repository: &Repository) -> ExitCode {
 /// The usual tests, those of Rust in their full form, then those that need other systems.
 pub fn all(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    while_packages_come(repository, || {
+    std::thread::scope(|scope| {
+        let installed = scope.spawn(|| install_all(repository));
         if take_build(repository, &mut steps) {
+            // A step that misses something says so.
+            let _ = installed.join();
             let elsewhere = Elsewhere::start(repository);
             take_usual(repository, &mut steps, Some(("ENMM_FULL", "1")));
             steps.print_counts();
@@ -47,6 +51,13 @@ pub fn all(repository: &Repository) -> ExitCode {
         }
     });
     steps.close()
+}
+
+/// Installs what the steps after the build need: that waits for the network more than it computes.
+fn install_all(repository: &Repository) {
+    venv::prepare(repository, Packages::All);
+    [&WINDOWS_QUICK, &AARCH64_QUICK].into_iter().for_each(cross::install);
+    python::install(repository);
 }
 
 /// Builds that need target folders of their own: they fill the time in which tests leave a processor idle.
@@ -63,14 +74,6 @@ impl Elsewhere {
             platforms: [&WINDOWS_QUICK, &AARCH64_QUICK].map(quick),
         }
     }
-}
-
-/// Installs the Python packages beside `act`: that waits for the network more than it computes.
-fn while_packages_come(repository: &Repository, act: impl FnOnce()) {
-    std::thread::scope(|scope| {
-        scope.spawn(|| venv::prepare(repository, Packages::Usual));
-        act();
-    });
 }
 
 /// Returns whether there is a build, which all other steps need; they run whatever failed before.
