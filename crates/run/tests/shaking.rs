@@ -27,7 +27,7 @@ fn a_shaken_block_that_slips_is_warned_of() {
 }
 
 #[test]
-fn one_that_rests_or_slides_on_quiet_ground_is_not() {
+fn one_that_rests_or_slides_on_still_ground_is_not() {
     for (moves, friction_deg) in [(true, 60.0), (false, 20.0)] {
         assert_eq!(warnings(moves, friction_deg), Vec::<String>::new(), "{moves}, {friction_deg}");
     }

@@ -98,7 +98,7 @@ pub fn install(platform: &Platform) {
     let Some(cross) = &platform.cross else { return };
     let purpose = purpose_of_tests(platform);
     provide_compiler(cross, &purpose);
-    debian::provide(&purpose, cross.emulator_packages, || cross.has_emulator());
+    provide_emulator(cross, &purpose);
 }
 
 fn purpose_of_tests(platform: &Platform) -> String {
@@ -112,6 +112,10 @@ fn provide_compiler(cross: &Cross, purpose: &str) {
     debian::provide(purpose, cross.compiler_package, || cross.has_compiler());
 }
 
+fn provide_emulator(cross: &Cross, purpose: &str) -> bool {
+    debian::provide(purpose, cross.emulator_packages, || cross.has_emulator())
+}
+
 /// Whether standard library and compiler are there, installed where they can be. Says what is missing.
 fn is_ready(cross: &Cross, purpose: &str) -> bool {
     provide_compiler(cross, purpose);
@@ -120,7 +124,7 @@ fn is_ready(cross: &Cross, purpose: &str) -> bool {
 
 /// Whether the emulator is there, installed where Debian's packages can be; says what is left out without it.
 fn has_emulator(cross: &Cross, purpose: &str) -> bool {
-    let is_there = debian::provide(purpose, cross.emulator_packages, || cross.has_emulator());
+    let is_there = provide_emulator(cross, purpose);
     if !is_there {
         let [emulator, packages] = [cross.emulator[0], cross.emulator_packages];
         println!(

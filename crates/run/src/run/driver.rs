@@ -459,7 +459,7 @@ impl<'a> Driver<'a> {
         ))
     }
 
-    /// Warns of joints that have slipped when the ground has shaken: no mesh alone tells how far.
+    /// Warns of joints that have slipped when the ground has shaken: their slip depends on the mesh.
     fn warn_of_shaking(&mut self) -> Result<(), RunError> {
         let (case, stage) = (self.simulation.case(), self.simulation.stage());
         if !case.is_shaken(self.simulation.state().stage as usize) {
