@@ -8,6 +8,8 @@ use enmm::model::{ContactState, Simulation};
 const SETTLED: f64 = 1e-13;
 /// Forces and velocities may then differ by what is left of a change that decays by some per cent in each sweep.
 const TOLERANCE: f64 = 1e-9;
+/// Share of the largest force that is round-off.
+const ROUND_OFF: f64 = 1e-13;
 
 /// A slope in 13 blocks on joints with cohesion and tension; the master joint is curved in spring and strength. It
 /// rests, then loses its strength and fails.
@@ -96,7 +98,7 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
         near,
         masses,
         &model.covers.block_ranges.covers,
-        &workspace.selection.accepted.near_side,
+        &workspace.selection.accepted.found,
     );
     let mut others = OtherConstraints { rows: &mut [], bolts: &mut [] };
     let report = solver.run(masses, &options, &approach, &mut workspace.contacts, &mut others);
@@ -108,7 +110,10 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
         let (found, plain) = (&found.history, &plain.history);
         let apart = (found.normal_force - plain.normal_force).hypot(found.shear_force - plain.shear_force);
         assert!(apart <= TOLERANCE * largest, "contact {k}: {found:?} instead of {plain:?}");
-        assert_eq!(found.state, plain.state, "contact {k}: {found:?} instead of {plain:?}");
+        // Whether a force of round-off is one, chance decides.
+        if found.normal_force.max(plain.normal_force) > ROUND_OFF * largest {
+            assert_eq!(found.state, plain.state, "contact {k}: {found:?} instead of {plain:?}");
+        }
     }
     let fastest = expected.increment.iter().map(|v| v.norm()).fold(0.0, f64::max);
     for (i, (found, plain)) in workspace.sweep.increment.iter().zip(&expected.increment).enumerate() {

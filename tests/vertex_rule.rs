@@ -1,5 +1,5 @@
-//! Claim: the lanes that go ahead of the vertex rule leave out nothing that the rule accepts, and the contacts of a
-//! step are those that the rule accepts of all near sides. Here it is applied one node at a time, without the lanes.
+//! Claim: the lanes that go ahead of the vertex rule leave out nothing that the rule accepts. In a step that finds all
+//! contacts, these are what the rule accepts of all near sides; it is applied one node at a time, without the lanes.
 
 use std::path::Path;
 
@@ -12,9 +12,13 @@ use crate::common::root;
 /// Near sides of a step, how many of them the lanes leave, and how many contacts there are.
 type Counts = [usize; 3];
 
-/// Applies the rule to the near sides of the next step and compares.
+/// Applies the rule to the near sides of the next step, which finds all contacts, and compares.
 fn compare(simulation: &Simulation, case: &str) -> Counts {
-    let (model, (state, workspace)) = (simulation.model(), simulation.look_ahead());
+    let (model, mut state) = (simulation.model(), simulation.state().clone());
+    state.found.forget();
+    let mut anew = simulation.clone();
+    anew.restore(state);
+    let (state, workspace) = anew.look_ahead();
     let (size, constants) = (model.covers.mesh.size, model.entrance);
     let dt = state.rest_of_step(model);
     let rule = VertexRule {

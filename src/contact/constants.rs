@@ -45,6 +45,11 @@ pub struct EntranceRule {
     pub reach: f64,
     /// The same for one that closes: steps of the fastest cover.
     pub reach_steps: f64,
+    /// Way of a node against the sides near it up to which its contacts stay as they were found.
+    pub stays: f64,
+    /// Internal steps after which contacts are found again at all nodes: round-off chooses between equal depths, and
+    /// what it chose must not last.
+    pub stays_steps: f64,
     /// Distance within which the search pairs nodes and edges.
     pub cutoff: f64,
     /// Turn (rad) from which a boundary point is a corner.
@@ -84,6 +89,8 @@ impl Default for EntranceRule {
             share_floor: 1e-3,
             reach: 0.005,
             reach_steps: 8.0,
+            stays: 5e-4,
+            stays_steps: 10.0,
             cutoff: 0.25,
             corner_angle: 0.05,
             kink_angle: 1e-3,

@@ -3,7 +3,9 @@
 
 use std::fmt::Display;
 
-use crate::contact::{BoltState, BondHistory, ContactHistory, Meeting, NeighbourList, Unloaded};
+use crate::contact::{
+    BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, Meeting, NeighbourList, Unloaded,
+};
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
 
@@ -134,6 +136,7 @@ impl Simulation {
             columns: _,
             contacts,
             bonds,
+            found,
             friction_delay,
             neighbours,
             support_force: _,
@@ -159,6 +162,7 @@ impl Simulation {
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
         }
         self.check_neighbours(neighbours)?;
+        self.check_found(found, contacts, neighbours)?;
         self.check_stages(state)?;
         self.check_inputs("drive.from", from)?;
         self.check_inputs("drive.to", to)?;
@@ -274,6 +278,29 @@ impl Simulation {
         let found_at = neighbours.found_at();
         length("neighbours.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
         vectors("neighbours.found_at", found_at, LENGTH)
+    }
+
+    /// Checks what was found out about contacts, which are near sides of the last search.
+    fn check_found(&self, found: &FoundContacts, contacts: &[ContactHistory], neighbours: &NeighbourList) -> Fit {
+        let nodes = self.model().boundary.node_count();
+        if found.contacts.is_empty() {
+            return Ok(());
+        }
+        length("found.contacts", found.contacts.len(), contacts.len())?;
+        length("found.found_at", found.found_at().len(), nodes)?;
+        vectors("found.found_at", found.found_at(), LENGTH)?;
+        let near_sides = neighbours.pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side));
+        let near_sides: Vec<_> = near_sides.map(|pairs| (pairs[0].node, pairs[0].side)).collect();
+        for (k, (found, contact)) in found.contacts.iter().zip(contacts).enumerate() {
+            let &FoundContact { near_side, length, bonded, penalty, share, keeps: _ } = found;
+            if near_sides.get(near_side as usize) != Some(&(contact.node, contact.side)) {
+                unfit(format_args!("found.contacts[{k}].near_side"), near_side, "that of the contact".to_owned())?;
+            }
+            for (field, value) in [("length", length), ("bonded", bonded), ("penalty", penalty), ("share", share)] {
+                between(format_args!("found.contacts[{k}].{field}"), value, 0.0, LENGTH)?;
+            }
+        }
+        Ok(())
     }
 
     /// Checks what stages change: supports, fixities, blocks that are gone, laws and bolts.

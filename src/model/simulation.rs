@@ -84,6 +84,7 @@ impl Simulation {
     #[must_use]
     pub fn with_entrance(mut self, rule: EntranceRule) -> Self {
         self.built.model.entrance = rule;
+        self.built.state.found.forget();
         self.report.take();
         self
     }
@@ -132,6 +133,7 @@ impl Simulation {
     /// Takes the displacements of later steps as small: they change gaps and forces, but the contacts, their normals,
     /// lengths and places stay those of the next step. A new stage or another state ends this.
     pub fn assume_small_displacements(&mut self) {
+        self.built.state.found.forget();
         self.workspace.selection.kept_gaps = Some(Vec::new());
     }
 

@@ -29,7 +29,7 @@ pub use workspace::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{BoltState, BondHistory, ContactHistory, JointLaw, LawId, NeighbourList};
+use crate::contact::{BoltState, BondHistory, ContactHistory, FoundContacts, JointLaw, LawId, NeighbourList};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnState, PlasticStrain};
 
@@ -80,6 +80,8 @@ pub struct State {
     pub contacts: Vec<ContactHistory>,
     /// Bond of each of them; empty in a model whose joints do not soften.
     pub bonds: Vec<BondHistory>,
+    /// What was found out about them; empty in a model whose joints soften, and in implicit runs.
+    pub found: FoundContacts,
     /// How friction is delayed in a dynamic stage; none before its first step, and in static stages.
     pub friction_delay: Option<FrictionDelay>,
     /// Near pairs of the last search.
@@ -146,6 +148,7 @@ impl State {
             velocity,
             contacts,
             bonds,
+            found,
             friction_delay,
             neighbours,
             support_force,
@@ -167,14 +170,14 @@ impl State {
             counters,
         } = other;
         (self.stage, self.stage_start, self.stage_step, self.step) = (*stage, *stage_start, *stage_step, *step);
-        (self.part, self.dt_last, self.static_stretch) = (*part, *dt_last, *static_stretch);
-        (self.most_rest, self.friction_delay) = (*most_rest, *friction_delay);
-        (self.ledger, self.counters) = (*ledger, *counters);
+        (self.part, self.dt_last, self.static_stretch, self.ledger) = (*part, *dt_last, *static_stretch, *ledger);
+        (self.most_rest, self.friction_delay, self.counters) = (*most_rest, *friction_delay, *counters);
         self.stage_starts.clone_from(stage_starts);
         self.displacement.clone_from(displacement);
         self.velocity.clone_from(velocity);
         self.contacts.clone_from(contacts);
         self.bonds.clone_from(bonds);
+        self.found.copy_from(found);
         self.support_force.clone_from(support_force);
         self.support_rest.clone_from(support_rest);
         self.fix_active.clone_from(fix_active);

@@ -50,6 +50,7 @@ pub fn search(
         let view = SearchView { boundary, frames, cutoff, removed: &state.removed, fixed, serial };
         selection.grid.search(&view, &mut state.neighbours);
         selection.near_sides.forget();
+        state.found.forget();
         open_close.forget_order();
         state.counters.searches += 1;
     }
@@ -70,7 +71,7 @@ pub fn entrance(
         return keep(model, state, selection, contacts);
     }
     let SelectionBuffers { near_sides, accepted, cache, penetrating, trace_law, .. } = selection;
-    near_sides.list(&state.neighbours.pairs);
+    near_sides.list(&model.boundary, &state.neighbours.pairs);
     cache.index(&state.contacts, model.boundary.node_count());
     penetrating.index(&model.boundary, frames, &state.contacts);
     let rule = VertexRule {
@@ -87,6 +88,8 @@ pub fn entrance(
     let has_impacts = matches!(step.regime, Regime::Dynamic { .. }) && reach.ahead > 0.0;
     let narrow = NarrowPhase {
         rule,
+        last: &state.found.contacts,
+        found_at: state.found.kept_from(state.step, &model.entrance),
         star: &model.covers.star_position,
         displacement: &state.displacement,
         laws: &state.laws,

@@ -105,6 +105,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32,
     state.stage_starts.push(start);
     quiet::begin_stage(model, regime, state);
     state.neighbours.forget();
+    state.found.forget();
     state.stage_displacement.clear();
     state.stage_force.clear();
     if let Regime::Static { .. } = regime {

@@ -48,7 +48,7 @@ pub fn run_all(simulation: &mut Simulation) -> Vec<StepReport> {
 /// model is built with them, and `contact_boundary.rs` varies them.
 pub fn varied_rules() -> Vec<(String, EntranceRule)> {
     type Constant = fn(&mut EntranceRule) -> &mut f64;
-    let constants: [(&str, Constant); 18] = [
+    let constants: [(&str, Constant); 20] = [
         ("ledge", |rule| &mut rule.ledge),
         ("closure_most", |rule| &mut rule.closure_most),
         ("flush_sine", |rule| &mut rule.flush_sine),
@@ -66,6 +66,8 @@ pub fn varied_rules() -> Vec<(String, EntranceRule)> {
         ("share_floor", |rule| &mut rule.share_floor),
         ("reach", |rule| &mut rule.reach),
         ("reach_steps", |rule| &mut rule.reach_steps),
+        ("stays", |rule| &mut rule.stays),
+        ("stays_steps", |rule| &mut rule.stays_steps),
         ("cutoff", |rule| &mut rule.cutoff),
     ];
     let vary = |(name, constant): (&str, Constant)| {

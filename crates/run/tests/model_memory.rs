@@ -69,7 +69,7 @@ fn bytes(simulation: &Simulation) -> [usize; 3] {
 }
 
 /// Ten elements, sixteen boundary edges and as many contacts a block: the limits are 15 % above what was counted when
-/// they were set (352, 281, and 1252 on one thread; more threads have more runs of near pairs in hand).
+/// they were set (352, 397, and 1252 on one thread; more threads have more runs of near pairs in hand).
 #[test]
 fn a_jointed_model_stays_within_its_bytes_per_element() {
     let mut simulation = built(&slope(Some(3.1), 2.38, 1.0));
@@ -77,7 +77,7 @@ fn a_jointed_model_stays_within_its_bytes_per_element() {
     simulation.advance(false).unwrap();
     let elements = simulation.model().covers.element_count();
     assert!((15_000..30_000).contains(&elements), "{elements}");
-    for (bytes, limit) in bytes(&simulation).into_iter().zip([410, 325, 1440]) {
+    for (bytes, limit) in bytes(&simulation).into_iter().zip([410, 456, 1440]) {
         assert!(bytes <= limit * elements, "{} bytes an element, limit {limit}", bytes / elements);
     }
 }

@@ -6,7 +6,9 @@ use enmm_lanes::{Kernel, Lanes, dispatch};
 use rayon::prelude::*;
 
 use crate::contact::frame::right_of;
-use crate::contact::{BondHistory, Closure, ContactHistory, ContactState, EdgeId, LawId, NodeId, Pair, VertexEdge};
+use crate::contact::{
+    BondHistory, Closure, ContactHistory, ContactState, EdgeId, FoundContact, LawId, NodeId, Pair, VertexEdge,
+};
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
@@ -17,6 +19,7 @@ use super::{ContactCandidate, GRAIN, NarrowPhase};
 struct Make<'a> {
     narrow: &'a NarrowPhase<'a>,
     candidates: &'a [ContactCandidate],
+    found: &'a mut [FoundContact],
     contacts: &'a mut [VertexEdge],
 }
 
@@ -25,42 +28,47 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        for (contact, candidate) in self.contacts.iter_mut().zip(self.candidates) {
-            self.narrow.make_one(candidate, contact);
+        for ((contact, found), candidate) in self.contacts.iter_mut().zip(self.found).zip(self.candidates) {
+            self.narrow.make_one(candidate, found, contact);
         }
     }
 }
 
 impl NarrowPhase<'_> {
     /// Makes the contacts of some candidates in place, from index `made` on; returns their end.
-    pub(super) fn make(&self, candidates: &[ContactCandidate], contacts: &mut Vec<VertexEdge>, made: usize) -> usize {
+    pub(super) fn make(
+        &self,
+        candidates: &[ContactCandidate],
+        found: &mut Vec<FoundContact>,
+        contacts: &mut Vec<VertexEdge>,
+        made: usize,
+    ) -> usize {
         let end = made + candidates.len();
+        found.resize(found.len().max(end), FoundContact::default());
         contacts.resize(contacts.len().max(end), VertexEdge::default());
-        let contacts = &mut contacts[made..end];
+        let (found, contacts) = (&mut found[made..end], &mut contacts[made..end]);
         if self.serial || candidates.len() <= GRAIN {
-            dispatch(Make { narrow: self, candidates, contacts });
+            dispatch(Make { narrow: self, candidates, found, contacts });
         } else {
-            let parts = contacts.par_chunks_mut(GRAIN).zip(candidates.par_chunks(GRAIN));
-            let make = |(contacts, candidates): (&mut [_], &[_])| dispatch(Make { narrow: self, candidates, contacts });
-            parts.for_each(make);
+            let parts = contacts.par_chunks_mut(GRAIN).zip(found.par_chunks_mut(GRAIN));
+            parts.zip(candidates.par_chunks(GRAIN)).for_each(|((contacts, found), candidates)| {
+                dispatch(Make { narrow: self, candidates, found, contacts });
+            });
         }
         end
     }
 
     #[inline(always)]
-    fn make_one(&self, candidate: &ContactCandidate, contact: &mut VertexEdge) {
+    fn make_one(&self, candidate: &ContactCandidate, found: &mut FoundContact, contact: &mut VertexEdge) {
         let (boundary, node) = (self.rule.boundary, candidate.node);
         let (point, edge) = (boundary.nodes.point[node], candidate.edge);
         let p = self.rule.position(node);
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
-        let Tributary { length, bonded, penalty, share, keeps } = self.tributary(node, candidate);
-        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law: self.law(node, edge) };
-        if self.softens {
-            bond = self.bond(candidate, bond);
-        }
-        let BondHistory { lengths: [length, bonded], law, .. } = bond;
+        let (new, BondHistory { damage, law, .. }) = self.found(candidate);
+        *found = new;
+        let FoundContact { length, bonded, penalty, share, keeps, .. } = new;
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
@@ -93,12 +101,28 @@ impl NarrowPhase<'_> {
             gap,
             length,
             bonded,
-            past: bond.damage,
+            past: damage,
             law,
             torn: false,
             fresh: candidate.held.is_none(),
             delayed: false,
         };
+    }
+
+    /// What is found out about a contact, and its bond.
+    #[inline(always)]
+    fn found(&self, candidate: &ContactCandidate) -> (FoundContact, BondHistory) {
+        let law = self.law(candidate.node, candidate.edge);
+        if let (true, Some(known)) = (candidate.stays, candidate.held) {
+            return (self.last[known as usize], BondHistory { law, ..BondHistory::default() });
+        }
+        let Tributary { length, bonded, penalty, share, keeps } = self.tributary(candidate.node, candidate);
+        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law };
+        if self.softens {
+            bond = self.bond(candidate, bond);
+        }
+        let [length, bonded] = bond.lengths;
+        (FoundContact { near_side: candidate.near_side, length, bonded, penalty, share, keeps }, bond)
     }
 
     /// The bond of a contact that would have a law and lengths (m), tributary and bonded: a bond that holds is as long

@@ -13,10 +13,13 @@ use rayon::prelude::*;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::StressField;
 
-use near_sides::NearRun;
+use near_sides::{NearRun, NearSide};
 use prefilter::Nearest;
 
-use super::{BondHistory, ContactCandidate, JointLaw, LawId, NearPair, VertexEdge, VertexRule};
+use super::{
+    BondHistory, ContactCandidate, ContactHistory, FoundContact, JointLaw, LawId, NearPair, NodeId, VertexEdge,
+    VertexRule,
+};
 
 pub use near_sides::NearSides;
 pub use prefilter::prefiltered;
@@ -32,6 +35,10 @@ const GRAIN: usize = 256;
 pub struct NarrowPhase<'a> {
     /// The vertex rule, with boundary, positions and contacts of the last step.
     pub rule: VertexRule<'a>,
+    /// What was found out about the contacts of the last step; empty when none of them stays.
+    pub last: &'a [FoundContact],
+    /// Positions of the nodes when all contacts were found (m); none where this step has to find all.
+    pub found_at: Option<&'a [Point]>,
     /// Star positions (m).
     pub star: &'a [Point],
     /// Displacements of the covers (m).
@@ -65,9 +72,8 @@ pub struct NarrowPhase<'a> {
 pub struct AcceptedPairs {
     runs: Vec<Run>,
     candidates: Vec<ContactCandidate>,
-    /// Near side of each contact of this step, and of those of the last one.
-    pub near_side: Vec<u32>,
-    near_side_last: Vec<u32>,
+    /// What has been found out about each contact of this step.
+    pub found: Vec<FoundContact>,
 }
 
 /// Candidates that it accepts of a run of near pairs.
@@ -77,6 +83,8 @@ struct Run {
     /// Sides that the current node enters, and a buffer for others.
     entered: Vec<ContactCandidate>,
     sides: Vec<ContactCandidate>,
+    /// Whether the contacts of each node stay as they were found.
+    stays: Vec<bool>,
     nearest: Nearest,
     /// Near sides that the prefilter leaves.
     likely: Vec<u32>,
@@ -88,14 +96,15 @@ impl AcceptedPairs {
         let numbers = |list: &Vec<u32>| size_of_val(list.as_slice());
         let of_run = |run: &Run| {
             let candidates = size_of_val(run.accepted.as_slice()) + size_of_val(run.sides.as_slice());
-            candidates + run.nearest.bytes() + numbers(&run.likely)
+            candidates + run.nearest.bytes() + numbers(&run.likely) + run.stays.len()
         };
-        let near_sides = numbers(&self.near_side) + numbers(&self.near_side_last);
-        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.candidates.as_slice()) + near_sides
+        let found = size_of_val(self.candidates.as_slice()) + size_of_val(self.found.as_slice());
+        self.runs.iter().map(of_run).sum::<usize>() + found
     }
 }
 
-/// Applies the vertex rule to every near side and fills the contacts of this step, ordered by node and side.
+/// Applies the vertex rule to the near sides of all nodes that have moved, and fills the contacts of this step, ordered
+/// by node and side.
 pub fn entrance_edges(
     narrow: &NarrowPhase,
     near_pairs: &[NearPair],
@@ -103,8 +112,6 @@ pub fn entrance_edges(
     accepted: &mut AcceptedPairs,
     contacts: &mut Vec<VertexEdge>,
 ) {
-    std::mem::swap(&mut accepted.near_side_last, &mut accepted.near_side);
-    accepted.near_side.clear();
     let mut made = 0;
     // In pieces: what is accepted of all near sides together would be as large as the contacts.
     let piece = if narrow.serial { 1 } else { RUNS * rayon::current_num_threads() };
@@ -115,6 +122,7 @@ pub fn entrance_edges(
         first = end;
     }
     contacts.truncate(made);
+    accepted.found.truncate(made);
 }
 
 impl NarrowPhase<'_> {
@@ -127,39 +135,72 @@ impl NarrowPhase<'_> {
         contacts: &mut Vec<VertexEdge>,
         made: usize,
     ) -> usize {
-        let AcceptedPairs { runs, candidates, near_side, near_side_last } = accepted;
+        let AcceptedPairs { runs, candidates, found } = accepted;
         runs.resize_with(runs.len().max(range.len()), Run::default);
         let runs = &mut runs[..range.len()];
-        let apply = |(k, run)| self.apply_vertex_rule(near_pairs, near_sides.run(k), near_side_last, run);
+        let apply = |(k, run)| self.apply_vertex_rule(near_pairs, near_sides.run(k), run);
         if let [run] = runs {
             apply((range.start, run));
-            near_side.extend(run.accepted.iter().map(|candidate| candidate.near_side));
-            return self.make(&run.accepted, contacts, made);
+            return self.make(&run.accepted, found, contacts, made);
         }
         range.into_par_iter().zip(&mut *runs).for_each(apply);
         candidates.clear();
         runs.iter().for_each(|run| candidates.extend_from_slice(&run.accepted));
-        near_side.extend(candidates.iter().map(|candidate| candidate.near_side));
-        self.make(candidates, contacts, made)
+        self.make(candidates, found, contacts, made)
     }
 
-    /// Finds the candidates that the vertex rule accepts of the near sides of a run; `near_side_last` are those of the
-    /// contacts of the last step, as a rule.
-    fn apply_vertex_rule(&self, near_pairs: &[NearPair], near: NearRun, near_side_last: &[u32], run: &mut Run) {
-        let Run { accepted, entered, sides, nearest, likely } = run;
-        nearest.fill(&self.rule, near, near_side_last);
-        list_likely(&nearest.may_enter, likely);
+    /// Finds the contacts of a run: candidates that the vertex rule accepts, and those that stay.
+    fn apply_vertex_rule(&self, near_pairs: &[NearPair], near: NearRun, run: &mut Run) {
+        let Run { accepted, entered, sides: others, stays, nearest, likely } = run;
         accepted.clear();
+        let by_node = || near.near_sides.chunk_by(|a, b| a.node == b.node);
+        stays.clear();
+        stays.extend(by_node().map(|sides| self.stays(sides)));
+        if stays.iter().all(|&stays| stays) {
+            return by_node().for_each(|sides| accepted.extend(self.staying(sides[0].node)));
+        }
+        nearest.fill(&self.rule, near, self.last);
+        list_likely(&nearest.may_enter, likely);
         let candidate = |k: usize| {
             let pair = &near_pairs[(near.near_sides[k].first + nearest.edge[k]) as usize];
             self.rule.candidate(pair, (near.first + k) as u32, nearest.held(k))
         };
-        let node = |k: u32| near.near_sides[k as usize].node;
-        for group in likely.chunk_by(|&a, &b| node(a) == node(b)) {
-            let all = || near.of_same_node(group[0] as usize).map(candidate);
-            self.rule.enter(group.iter().map(|&k| candidate(k as usize)), all, entered, sides);
-            accepted.extend_from_slice(entered);
+        let mut rest = likely.as_slice();
+        for (sides, stays) in by_node().zip(stays) {
+            let node = sides[0].node;
+            let own = rest.iter().take_while(|&&k| near.near_sides[k as usize].node == node).count();
+            let (own, later) = rest.split_at(own);
+            rest = later;
+            if *stays {
+                accepted.extend(self.staying(node));
+            } else if let [first, ..] = *own {
+                let all = || near.of_same_node(first as usize).map(candidate);
+                self.rule.enter(own.iter().map(|&k| candidate(k as usize)), all, entered, others);
+                accepted.extend_from_slice(entered);
+            }
         }
+    }
+
+    /// Whether the contacts of a node with some sides stay as they were found: it has hardly moved against these, and
+    /// strikes none of them.
+    fn stays(&self, sides: &[NearSide]) -> bool {
+        let Some(found_at) = self.found_at else { return false };
+        let way = |node: NodeId| self.rule.position(node) - found_at[node.index()];
+        let (node, most) = (sides[0].node, self.rule.constants.stays * self.rule.size);
+        let own = way(node);
+        let is_still = |&end: &NodeId| (way(end) - own).norm_squared() <= most * most;
+        let known = &self.rule.history[self.rule.cache.of_nodes([node.index(), node.index() + 1])];
+        sides.iter().all(|near| near.ends.iter().all(is_still))
+            && known.iter().all(|contact| contact.meeting.kept_stiffness == 0.0)
+    }
+
+    /// The contacts of a node in the last step, which stay.
+    fn staying(&self, node: NodeId) -> impl Iterator<Item = ContactCandidate> {
+        self.rule.cache.of_nodes([node.index(), node.index() + 1]).map(|k| {
+            let ContactHistory { node, side, edge, .. } = self.rule.history[k];
+            let candidate = self.rule.candidate(&NearPair { node, side, edge }, self.last[k].near_side, Some(k as u32));
+            ContactCandidate { stays: true, ..candidate }
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use enmm_lanes::{LANES, Places};
 
 use crate::contact::frame::{EDGE_PAIRS, NODE_PAIRS};
-use crate::contact::{ContactHistory, NearPair, NodeId, SideId};
+use crate::contact::{Boundary, ContactHistory, NearPair, NodeId, SideId};
 
 /// Near pairs in a run, which one thread takes: fixed, so that the order does not depend on threads.
 const RUN: usize = 4096;
@@ -17,6 +17,8 @@ pub struct NearSide {
     pub side: SideId,
     /// Index of the first near pair.
     pub first: u32,
+    /// Nodes before and after its near edges.
+    pub ends: [NodeId; 2],
 }
 
 /// Eight near sides of one run with equally many near edges. Lanes without one repeat the first.
@@ -90,7 +92,7 @@ impl NearSides {
     }
 
     /// Lists the near sides of near pairs, unless they are listed.
-    pub fn list(&mut self, near_pairs: &[NearPair]) {
+    pub fn list(&mut self, boundary: &Boundary, near_pairs: &[NearPair]) {
         if !self.near_sides.is_empty() && self.near_pairs == near_pairs.len() {
             return;
         }
@@ -101,7 +103,9 @@ impl NearSides {
         ends.clear();
         let mut first = 0;
         for pairs in near_pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side)) {
-            near_sides.push(NearSide { node: pairs[0].node, side: pairs[0].side, first });
+            let [before, last] = [pairs[0], pairs[pairs.len() - 1]].map(|pair| boundary.node_before[pair.edge]);
+            let ends = [before, boundary.nodes.next[last]];
+            near_sides.push(NearSide { node: pairs[0].node, side: pairs[0].side, first, ends });
             first += pairs.len() as u32;
         }
         self.near_pairs = near_pairs.len();

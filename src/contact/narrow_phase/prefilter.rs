@@ -5,7 +5,7 @@ use enmm_lanes::{Kernel, LANES, Lanes, Pair, Places, dispatch};
 
 use crate::contact::constants::SQUARES_ROUND_OFF;
 use crate::contact::vertex_rule::distance;
-use crate::contact::{ContactState, VertexRule};
+use crate::contact::{ContactState, FoundContact, VertexRule};
 
 use super::near_sides::{Batch, NearRun, NearSides};
 
@@ -38,9 +38,9 @@ impl Nearest {
         (self.known[k] != NONE).then_some(self.known[k])
     }
 
-    /// Finds the nearest edges of a run, which of them nodes may enter, and their contacts of the last step;
-    /// `near_side_last` are the near sides of these, as a rule.
-    pub fn fill(&mut self, rule: &VertexRule, run: NearRun, near_side_last: &[u32]) {
+    /// Finds the nearest edges of a run, which of them nodes may enter, and their contacts of the last step, which were
+    /// found as `last` says, as a rule.
+    pub fn fill(&mut self, rule: &VertexRule, run: NearRun, last: &[FoundContact]) {
         let (count, Self { edge, may_enter, known, rest }) = (run.near_sides.len(), &mut *self);
         edge.resize(count, 0);
         known.clear();
@@ -51,7 +51,7 @@ impl Nearest {
         rest.resize(count, 0.0);
         for k in rule.cache.of_nodes(run.nodes()) {
             let contact = &rule.history[k];
-            let guess = near_side_last.get(k).map_or(usize::MAX, |&guess| (guess as usize).wrapping_sub(run.first));
+            let guess = last.get(k).map_or(usize::MAX, |known| (known.near_side as usize).wrapping_sub(run.first));
             if let Some(at) = run.of(contact, guess) {
                 known[at] = k as u32;
                 may_enter[at] = u8::from(contact.state != ContactState::Open);

@@ -25,7 +25,7 @@ use self::order::{Sequence, SolverOrder};
 use self::subdomain::{PassKind, Subdomain, SubdomainPass};
 use self::support::SupportSystem;
 use self::wide_contact::{ContactView, WideContact};
-use super::{BoltRow, Boundary, ContactSetting, NearPair, NearSides, Support, SupportRow, VertexEdge};
+use super::{BoltRow, Boundary, ContactSetting, FoundContact, NearPair, NearSides, Support, SupportRow, VertexEdge};
 
 /// Contacts whose forces one thread takes from the rows.
 const CONTACTS: usize = 1024;
@@ -170,14 +170,14 @@ impl OpenClose {
         self.order.clear();
     }
 
-    /// Orders the contacts of a step, given by the near side of each, and all near sides when they are new.
+    /// Orders the contacts of a step, and all near sides when they are new.
     pub fn arrange(
         &mut self,
         boundary: &Boundary,
         (near_pairs, near_sides): (&[NearPair], &NearSides),
         mass_matrix: &MassMatrix,
         block_covers: &[u32],
-        contacts: &[u32],
+        contacts: &[FoundContact],
     ) {
         let view = SolverView { mass_matrix, masses: &self.masses };
         if self.order.is_empty() {

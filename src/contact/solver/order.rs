@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 
 use enmm_lanes::LANES;
 
-use crate::contact::{Boundary, EdgeId, NearPair, NearSides, buckets};
+use crate::contact::{Boundary, EdgeId, FoundContact, NearPair, NearSides, buckets};
 use crate::cover::{BlockId, CoverId};
 
 use super::SolverView;
@@ -238,11 +238,9 @@ impl SolverOrder {
     }
 
     /// Puts the block pairs and the contacts of a step in the order in which they are solved.
-    ///
-    /// `near_sides` are those of the contacts.
-    pub fn arrange(&mut self, near_sides: &[u32], view: &SolverView, sequence: &mut Sequence) {
+    pub fn arrange(&mut self, found: &[FoundContact], view: &SolverView, sequence: &mut Sequence) {
         let Sequence { wide_pairs, ends, row_start, contacts, slots } = sequence;
-        self.count_contacts(near_sides, slots);
+        self.count_contacts(found, slots);
         wide_pairs.clear();
         ends.clear();
         row_start.clear();
@@ -283,11 +281,11 @@ impl SolverOrder {
     }
 
     /// Finds the block pair of each contact, and the number of contacts of each block pair.
-    fn count_contacts(&mut self, near_sides: &[u32], block_pairs: &mut Vec<u32>) {
+    fn count_contacts(&mut self, found: &[FoundContact], block_pairs: &mut Vec<u32>) {
         self.count.clear();
         self.count.resize(self.block_pairs.len(), 0);
         block_pairs.clear();
-        block_pairs.extend(near_sides.iter().map(|&near_side| self.block_pair[near_side as usize]));
+        block_pairs.extend(found.iter().map(|contact| self.block_pair[contact.near_side as usize]));
         block_pairs.iter().for_each(|&block_pair| self.count[block_pair as usize] += 1);
     }
 }

@@ -15,7 +15,9 @@ mod slips;
 mod stage;
 mod warnings;
 
-use crate::contact::{BoltState, Boundary, EntranceRule, JointLaw, LawId, Resistance, Roughness, Softening, Support};
+use crate::contact::{
+    BoltState, Boundary, EntranceRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Softening, Support,
+};
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
@@ -417,6 +419,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         velocity,
         contacts: Vec::new(),
         bonds: Vec::new(),
+        found: FoundContacts::default(),
         neighbours: Default::default(),
         support_force: model.supports.iter().map(|s| s.preload).collect(),
         support_rest: vec![0.0; model.supports.len()],

@@ -1,9 +1,9 @@
 //! The end of a sub-step: velocities, positions, contact histories and the ledger.
 
-use crate::contact::{BoltRow, BoltState, ContactState};
+use crate::contact::{BoltRow, BoltState, ContactState, Frames};
 use crate::geometry::Vector;
 use crate::mechanics::{self, MassMatrix};
-use crate::state::{ChunkSums, Ledger, Model, MotionBuffers, State, SweepBuffers, Workspace};
+use crate::state::{ChunkSums, Ledger, Model, MotionBuffers, SelectionBuffers, State, SweepBuffers, Workspace};
 
 use super::bonds::{has_bonds, settle_bonds};
 use super::chunk_runs::{self, ChunkSlices};
@@ -32,7 +32,8 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     let forces = (extra(model, state, step), totals.row_sum);
     works.external_work += external_work(step.kick, velocities, forces, &workspace.load_force);
     let report = if step.report { start_report(model, state, step, &works, workspace) } else { StepReport::default() };
-    let Workspace { mass_matrix, motion, sums, supports, sweep, .. } = workspace;
+    let Workspace { mass_matrix, motion, sums, frames, selection, supports, sweep, .. } = workspace;
+    keep_found(model, state, frames, selection);
     keep_stage_force(model, state, step, mass_matrix, motion);
     move_columns(step, &motion.columns, &mut state.columns);
     if step.report {
@@ -45,6 +46,16 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     state.dt_last = step.dt;
     let is_sound = totals.squares.is_finite() && totals.fastest <= guard::speed_limit(model).powi(2);
     StepOutcome { report, end: step.time + step.dt, is_sound, is_singular: false }
+}
+
+/// Keeps what was found out about the contacts, unless bonds change them or displacements are small.
+fn keep_found(model: &Model, state: &mut State, frames: &Frames, selection: &mut SelectionBuffers) {
+    if has_bonds(&state.laws) || selection.kept_gaps.is_some() {
+        state.found.forget();
+    } else {
+        let (found, at) = (&mut selection.accepted.found, (&model.boundary, frames));
+        state.found.take_over(found, at, state.step, &model.entrance);
+    }
 }
 
 /// Adds what the impulses of all contacts give to every cover (Eq. 17); moves the covers unless a report wants the

@@ -61,7 +61,7 @@ pub(super) fn arrange(
     open_close: &mut OpenClose,
 ) {
     let near = (&neighbours.pairs[..], &selection.near_sides);
-    let accepted = &selection.accepted.near_side;
+    let accepted = &selection.accepted.found;
     open_close.arrange(&model.boundary, near, mass_matrix, &model.covers.block_ranges.covers, accepted);
 }
 
