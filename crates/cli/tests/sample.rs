@@ -207,12 +207,13 @@ output = "associated"
 #[test]
 fn a_case_that_changes_while_it_is_sampled_ends_the_work() {
     let place = Place::with(&case(RANDOM));
-    let words = [&["sample", "case.toml", "-n", "40", "--jobs", "1"], &QUICK[..]].concat();
+    // Far more samples than are found before the change is seen: one that came after the last would change nothing.
+    let words = [&["sample", "case.toml", "-n", "2000", "--jobs", "1"], &QUICK[..]].concat();
     for changed in [case(RANDOM).replace("young = 1e9", "young = 2e9"), "title = 1".to_owned()] {
         fs::write(place.path("case.toml"), case(RANDOM)).expect("written");
         let before = stored(&place, "case/ensemble.sqlite");
-        let driver = place.start(&words);
-        while stored(&place, "case/ensemble.sqlite") <= before {
+        let mut driver = place.start(&words);
+        while stored(&place, "case/ensemble.sqlite") <= before && driver.try_wait().expect("a process").is_none() {
             std::thread::sleep(Duration::from_millis(2));
         }
         fs::write(place.path("case.toml"), changed).expect("written");
