@@ -1,4 +1,4 @@
-//! What the narrow phase has found out about contacts. Nodes that hardly move against the sides near them keep it.
+//! Contacts as the narrow phase finds them. Nodes that hardly move against the sides near them keep theirs.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::geometry::Point;
 
 use super::{Boundary, EntranceRule, Frames};
 
-/// What is found out about a contact: that it is one, and how long it is. Node, side and edge are in its history.
+/// A contact as it is found: its near side, and how long it is. Node, side and edge are in its history.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct FoundContact {
     /// Index of the near side.

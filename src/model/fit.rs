@@ -280,7 +280,7 @@ impl Simulation {
         vectors("neighbours.found_at", found_at, LENGTH)
     }
 
-    /// Checks what was found out about contacts, which are near sides of the last search.
+    /// Checks contacts as they were found, which are near sides of the last search.
     fn check_found(&self, found: &FoundContacts, contacts: &[ContactHistory], neighbours: &NeighbourList) -> Fit {
         let nodes = self.model().boundary.node_count();
         if found.contacts.is_empty() {

@@ -80,7 +80,7 @@ pub struct State {
     pub contacts: Vec<ContactHistory>,
     /// Bond of each of them; empty in a model whose joints do not soften.
     pub bonds: Vec<BondHistory>,
-    /// What was found out about them; empty in a model whose joints soften, and in implicit runs.
+    /// The same as they were found; empty in a model whose joints soften, and in implicit runs.
     pub found: FoundContacts,
     /// How friction is delayed in a dynamic stage; none before its first step, and in static stages.
     pub friction_delay: Option<FrictionDelay>,

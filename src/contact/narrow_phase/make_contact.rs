@@ -109,7 +109,7 @@ impl NarrowPhase<'_> {
         };
     }
 
-    /// What is found out about a contact, and its bond.
+    /// Lengths and near side of a contact, and its bond.
     #[inline(always)]
     fn found(&self, candidate: &ContactCandidate) -> (FoundContact, BondHistory) {
         let law = self.law(candidate.node, candidate.edge);

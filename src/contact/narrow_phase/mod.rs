@@ -35,7 +35,7 @@ const GRAIN: usize = 256;
 pub struct NarrowPhase<'a> {
     /// The vertex rule, with boundary, positions and contacts of the last step.
     pub rule: VertexRule<'a>,
-    /// What was found out about the contacts of the last step; empty when none of them stays.
+    /// The contacts of the last step as they were found; empty when none of them stays.
     pub last: &'a [FoundContact],
     /// Positions of the nodes when all contacts were found (m); none where this step has to find all.
     pub found_at: Option<&'a [Point]>,
@@ -72,7 +72,7 @@ pub struct NarrowPhase<'a> {
 pub struct AcceptedPairs {
     runs: Vec<Run>,
     candidates: Vec<ContactCandidate>,
-    /// What has been found out about each contact of this step.
+    /// The contacts of this step as they were found.
     pub found: Vec<FoundContact>,
 }
 
@@ -189,14 +189,14 @@ impl NarrowPhase<'_> {
         let (node, most) = (sides[0].node, self.rule.constants.stays * self.rule.size);
         let own = way(node);
         let is_still = |&end: &NodeId| (way(end) - own).norm_squared() <= most * most;
-        let known = &self.rule.history[self.rule.cache.of_nodes([node.index(), node.index() + 1])];
+        let known = &self.rule.history[self.rule.cache.of_node(node)];
         sides.iter().all(|near| near.ends.iter().all(is_still))
             && known.iter().all(|contact| contact.meeting.kept_stiffness == 0.0)
     }
 
     /// The contacts of a node in the last step, which stay.
     fn staying(&self, node: NodeId) -> impl Iterator<Item = ContactCandidate> {
-        self.rule.cache.of_nodes([node.index(), node.index() + 1]).map(|k| {
+        self.rule.cache.of_node(node).map(|k| {
             let ContactHistory { node, side, edge, .. } = self.rule.history[k];
             let candidate = self.rule.candidate(&NearPair { node, side, edge }, self.last[k].near_side, Some(k as u32));
             ContactCandidate { stays: true, ..candidate }

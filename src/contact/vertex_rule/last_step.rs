@@ -36,6 +36,12 @@ impl ContactCache {
     pub(in crate::contact) fn of_nodes(&self, [first, end]: [usize; 2]) -> Range<usize> {
         self.first[first] as usize..self.first[end] as usize
     }
+
+    /// Contacts of a node.
+    #[inline(always)]
+    pub(in crate::contact) fn of_node(&self, node: NodeId) -> Range<usize> {
+        self.of_nodes([node.index(), node.index() + 1])
+    }
 }
 
 /// A contact of the last step that is in penetration at the current positions.
@@ -118,7 +124,7 @@ impl PenetratingContacts {
 impl VertexRule<'_> {
     /// Whether a node carried force against a side in the last step.
     pub(super) fn carries(&self, node: NodeId, side: SideId) -> bool {
-        let known = &self.history[self.cache.of_nodes([node.index(), node.index() + 1])];
+        let known = &self.history[self.cache.of_node(node)];
         known.iter().any(|h| h.side == side && h.state != ContactState::Open)
     }
 

@@ -101,7 +101,7 @@ impl VertexRule<'_> {
         let corner_strikes = || {
             let end = self.boundary.sides.ends[candidate.side][usize::from(candidate.along > 0.0)];
             let (corner, sides) = (self.boundary.node_before[end.point], self.boundary.sides_of_node(candidate.node));
-            let mut known = self.cache.of_nodes([corner.index(), corner.index() + 1]);
+            let mut known = self.cache.of_node(corner);
             known.any(|k| sides.contains(&self.history[k].side) && strikes(k as u32))
         };
         candidate.beyond == 0.0 || corner_strikes()
