@@ -3,22 +3,21 @@
 use std::f64::consts::TAU;
 
 use enmm_lanes::{Kernel, Lanes, dispatch};
-use rayon::prelude::*;
 
 use crate::contact::frame::right_of;
 use crate::contact::{
-    BondHistory, Closure, ContactHistory, ContactState, EdgeId, FoundContact, LawId, NodeId, Pair, VertexEdge,
+    BondHistory, Closure, ContactHistory, ContactState, EdgeId, FoundContact, LawId, NearPair, NodeId, Pair, VertexEdge,
 };
 use crate::cover::{CoverId, Weights};
 use crate::geometry::{Point, Vector};
 
 use super::tributary_length::Tributary;
-use super::{ContactCandidate, GRAIN, NarrowPhase};
+use super::{Accepted, ContactCandidate, NarrowPhase, Run};
 
-/// Makes contacts from accepted candidates: compiled for every kind of lanes.
+/// Makes the contacts of a run: compiled for every kind of lanes.
 struct Make<'a> {
     narrow: &'a NarrowPhase<'a>,
-    candidates: &'a [ContactCandidate],
+    run: &'a Run,
     found: &'a mut [FoundContact],
     contacts: &'a mut [VertexEdge],
 }
@@ -28,47 +27,66 @@ impl Kernel for Make<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        for ((contact, found), candidate) in self.contacts.iter_mut().zip(self.found).zip(self.candidates) {
-            self.narrow.make_one(candidate, found, contact);
+        let Self { narrow, run, found, contacts } = self;
+        for ((contact, found), accepted) in contacts.iter_mut().zip(found).zip(&run.accepted) {
+            match *accepted {
+                Accepted::Stays(known) => narrow.make_staying(known as usize, found, contact),
+                Accepted::Found(k) => narrow.make_found(&run.candidates[k as usize], found, contact),
+            }
         }
     }
 }
 
 impl NarrowPhase<'_> {
-    /// Makes the contacts of some candidates in place, from index `made` on; returns their end.
-    pub(super) fn make(
-        &self,
-        candidates: &[ContactCandidate],
-        found: &mut Vec<FoundContact>,
-        contacts: &mut Vec<VertexEdge>,
-        made: usize,
-    ) -> usize {
-        let end = made + candidates.len();
-        found.resize(found.len().max(end), FoundContact::default());
-        contacts.resize(contacts.len().max(end), VertexEdge::default());
-        let (found, contacts) = (&mut found[made..end], &mut contacts[made..end]);
-        if self.serial || candidates.len() <= GRAIN {
-            dispatch(Make { narrow: self, candidates, found, contacts });
-        } else {
-            let parts = contacts.par_chunks_mut(GRAIN).zip(found.par_chunks_mut(GRAIN));
-            parts.zip(candidates.par_chunks(GRAIN)).for_each(|((contacts, found), candidates)| {
-                dispatch(Make { narrow: self, candidates, found, contacts });
-            });
+    /// Makes the contacts of some runs in place.
+    pub(super) fn make(&self, runs: &[Run], found: &mut [FoundContact], contacts: &mut [VertexEdge]) {
+        if let [run] = runs {
+            return dispatch(Make { narrow: self, run, found, contacts });
         }
-        end
+        let (first, rest) = runs.split_at(runs.len() / 2);
+        let count = first.iter().map(|run| run.accepted.len()).sum();
+        let (found, contacts) = (found.split_at_mut(count), contacts.split_at_mut(count));
+        rayon::join(|| self.make(first, found.0, contacts.0), || self.make(rest, found.1, contacts.1));
     }
 
+    /// Makes a contact of the last step that stays as it was found.
     #[inline(always)]
-    fn make_one(&self, candidate: &ContactCandidate, found: &mut FoundContact, contact: &mut VertexEdge) {
+    fn make_staying(&self, known: usize, found: &mut FoundContact, contact: &mut VertexEdge) {
+        let ContactHistory { node, side, edge, .. } = self.rule.history[known];
+        *found = self.last[known];
+        let candidate = self.rule.candidate(&NearPair { node, side, edge }, found.near_side, Some(known as u32));
+        self.make_one(&candidate, (found, 0.0, self.law(node, edge)), contact);
+    }
+
+    /// Makes a contact that the vertex rule has accepted.
+    #[inline(always)]
+    fn make_found(&self, candidate: &ContactCandidate, found: &mut FoundContact, contact: &mut VertexEdge) {
+        let Tributary { length, bonded, penalty, share, keeps } = self.tributary(candidate.node, candidate);
+        let law = self.law(candidate.node, candidate.edge);
+        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law };
+        if self.softens {
+            bond = self.bond(candidate, bond);
+        }
+        let [length, bonded] = bond.lengths;
+        *found = FoundContact { near_side: candidate.near_side, length, bonded, penalty, share, keeps };
+        self.make_one(candidate, (found, bond.damage, bond.law), contact);
+    }
+
+    /// Makes a contact as it was found, with the damage of its bond and its law.
+    #[inline(always)]
+    fn make_one(
+        &self,
+        candidate: &ContactCandidate,
+        (found, damage, law): (&FoundContact, f64, LawId),
+        contact: &mut VertexEdge,
+    ) {
         let (boundary, node) = (self.rule.boundary, candidate.node);
         let (point, edge) = (boundary.nodes.point[node], candidate.edge);
         let p = self.rule.position(node);
         let normal = right_of(candidate.tangent);
         let covers = [boundary.covers[point], self.covers_under(candidate)];
         let weights = [boundary.weights[point], self.weights_at(&covers[1], p)];
-        let (new, BondHistory { damage, law, .. }) = self.found(candidate);
-        *found = new;
-        let FoundContact { length, bonded, penalty, share, keeps, .. } = new;
+        let FoundContact { length, bonded, penalty, share, keeps, .. } = *found;
         let mut stiffness = self.laws[law].stiffness(length, penalty);
         let closure_max = self.laws[law].closure_max;
         let closure = Closure { stiffness: stiffness[0], most: closure_max };
@@ -107,22 +125,6 @@ impl NarrowPhase<'_> {
             fresh: candidate.held.is_none(),
             delayed: false,
         };
-    }
-
-    /// Lengths and near side of a contact, and its bond.
-    #[inline(always)]
-    fn found(&self, candidate: &ContactCandidate) -> (FoundContact, BondHistory) {
-        let law = self.law(candidate.node, candidate.edge);
-        if let (true, Some(known)) = (candidate.stays, candidate.held) {
-            return (self.last[known as usize], BondHistory { law, ..BondHistory::default() });
-        }
-        let Tributary { length, bonded, penalty, share, keeps } = self.tributary(candidate.node, candidate);
-        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law };
-        if self.softens {
-            bond = self.bond(candidate, bond);
-        }
-        let [length, bonded] = bond.lengths;
-        (FoundContact { near_side: candidate.near_side, length, bonded, penalty, share, keeps }, bond)
     }
 
     /// The bond of a contact that would have a law and lengths (m), tributary and bonded: a bond that holds is as long

@@ -26,8 +26,6 @@ pub use prefilter::prefiltered;
 
 /// Runs of each thread that are tested before their contacts are made.
 const RUNS: usize = 8;
-/// Least number of contacts that a thread makes.
-const GRAIN: usize = 256;
 
 /// Inputs of the narrow phase.
 #[doc(alias = "entrance")]
@@ -67,23 +65,32 @@ pub struct NarrowPhase<'a> {
     pub serial: bool,
 }
 
-/// Candidates that the vertex rule accepts in one step: buffers of [`entrance_edges`].
+/// Contacts of one step before they are made: buffers of [`entrance_edges`].
 #[derive(Debug, Clone, Default)]
 pub struct AcceptedPairs {
     runs: Vec<Run>,
-    candidates: Vec<ContactCandidate>,
     /// The contacts of this step as they were found.
     pub found: Vec<FoundContact>,
 }
 
-/// Candidates that it accepts of a run of near pairs.
+/// A contact of this step before it is made.
+#[derive(Debug, Clone, Copy)]
+enum Accepted {
+    /// The contact of the last step that has this index stays as it was found.
+    Stays(u32),
+    /// The vertex rule has accepted the candidate of its run that has this index.
+    Found(u32),
+}
+
+/// Contacts of a run of near pairs.
 #[derive(Debug, Clone, Default)]
 struct Run {
-    accepted: Vec<ContactCandidate>,
+    accepted: Vec<Accepted>,
+    candidates: Vec<ContactCandidate>,
     /// Sides that the current node enters, and a buffer for others.
     entered: Vec<ContactCandidate>,
     sides: Vec<ContactCandidate>,
-    /// Whether the contacts of each node stay as they were found.
+    /// Whether the contacts of the node of each near side stay as they were found.
     stays: Vec<bool>,
     nearest: Nearest,
     /// Near sides that the prefilter leaves.
@@ -93,13 +100,12 @@ struct Run {
 impl AcceptedPairs {
     /// Bytes of the buffers.
     pub fn bytes(&self) -> usize {
-        let numbers = |list: &Vec<u32>| size_of_val(list.as_slice());
         let of_run = |run: &Run| {
-            let candidates = size_of_val(run.accepted.as_slice()) + size_of_val(run.sides.as_slice());
-            candidates + run.nearest.bytes() + numbers(&run.likely) + run.stays.len()
+            let candidates = size_of_val(run.candidates.as_slice()) + size_of_val(run.sides.as_slice());
+            let lists = size_of_val(run.accepted.as_slice()) + size_of_val(run.likely.as_slice());
+            candidates + lists + run.nearest.bytes() + run.stays.len()
         };
-        let found = size_of_val(self.candidates.as_slice()) + size_of_val(self.found.as_slice());
-        self.runs.iter().map(of_run).sum::<usize>() + found
+        self.runs.iter().map(of_run).sum::<usize>() + size_of_val(self.found.as_slice())
     }
 }
 
@@ -112,72 +118,57 @@ pub fn entrance_edges(
     accepted: &mut AcceptedPairs,
     contacts: &mut Vec<VertexEdge>,
 ) {
-    let mut made = 0;
+    let AcceptedPairs { runs, found } = accepted;
     // In pieces: what is accepted of all near sides together would be as large as the contacts.
     let piece = if narrow.serial { 1 } else { RUNS * rayon::current_num_threads() };
-    let mut first = 0;
+    runs.resize_with(runs.len().max(piece.min(near_sides.runs())), Run::default);
+    let (mut first, mut made) = (0, 0);
     while first < near_sides.runs() {
-        let end = near_sides.runs().min(first + piece);
-        made = narrow.enter((near_pairs, near_sides), first..end, accepted, contacts, made);
-        first = end;
+        let runs = &mut runs[..piece.min(near_sides.runs() - first)];
+        let apply = |(k, run)| narrow.apply_vertex_rule(near_pairs, near_sides.run(first + k), run);
+        match &mut *runs {
+            [run] => apply((0, run)),
+            runs => runs.par_iter_mut().enumerate().for_each(apply),
+        }
+        let end = made + runs.iter().map(|run| run.accepted.len()).sum::<usize>();
+        found.resize(found.len().max(end), FoundContact::default());
+        contacts.resize(contacts.len().max(end), VertexEdge::default());
+        narrow.make(runs, &mut found[made..end], &mut contacts[made..end]);
+        (first, made) = (first + runs.len(), end);
     }
     contacts.truncate(made);
-    accepted.found.truncate(made);
+    found.truncate(made);
 }
 
 impl NarrowPhase<'_> {
-    /// Applies the vertex rule to some runs and makes their contacts, from index `made` on; returns their end.
-    fn enter(
-        &self,
-        (near_pairs, near_sides): (&[NearPair], &NearSides),
-        range: Range<usize>,
-        accepted: &mut AcceptedPairs,
-        contacts: &mut Vec<VertexEdge>,
-        made: usize,
-    ) -> usize {
-        let AcceptedPairs { runs, candidates, found } = accepted;
-        runs.resize_with(runs.len().max(range.len()), Run::default);
-        let runs = &mut runs[..range.len()];
-        let apply = |(k, run)| self.apply_vertex_rule(near_pairs, near_sides.run(k), run);
-        if let [run] = runs {
-            apply((range.start, run));
-            return self.make(&run.accepted, found, contacts, made);
-        }
-        range.into_par_iter().zip(&mut *runs).for_each(apply);
-        candidates.clear();
-        runs.iter().for_each(|run| candidates.extend_from_slice(&run.accepted));
-        self.make(candidates, found, contacts, made)
-    }
-
     /// Finds the contacts of a run: candidates that the vertex rule accepts, and those that stay.
     fn apply_vertex_rule(&self, near_pairs: &[NearPair], near: NearRun, run: &mut Run) {
-        let Run { accepted, entered, sides: others, stays, nearest, likely } = run;
-        accepted.clear();
+        let Run { accepted, candidates, entered, sides: others, stays, nearest, likely } = run;
         let by_node = || near.near_sides.chunk_by(|a, b| a.node == b.node);
+        accepted.clear();
+        candidates.clear();
         stays.clear();
-        stays.extend(by_node().map(|sides| self.stays(sides)));
-        if stays.iter().all(|&stays| stays) {
-            return by_node().for_each(|sides| accepted.extend(self.staying(sides[0].node)));
-        }
-        nearest.fill(&self.rule, near, self.last);
+        by_node().for_each(|sides| stays.resize(stays.len() + sides.len(), self.stays(sides)));
+        nearest.fill(&self.rule, near, stays, self.last);
         list_likely(&nearest.may_enter, likely);
         let candidate = |k: usize| {
             let pair = &near_pairs[(near.near_sides[k].first + nearest.edge[k]) as usize];
             self.rule.candidate(pair, (near.first + k) as u32, nearest.held(k))
         };
-        let mut rest = likely.as_slice();
-        for (sides, stays) in by_node().zip(stays) {
-            let node = sides[0].node;
-            let own = rest.iter().take_while(|&&k| near.near_sides[k as usize].node == node).count();
-            let (own, later) = rest.split_at(own);
+        let (mut rest, mut first) = (likely.as_slice(), 0);
+        for sides in by_node() {
+            let end = first + sides.len();
+            let (own, later) = rest.split_at(rest.partition_point(|&k| (k as usize) < end));
             rest = later;
-            if *stays {
-                accepted.extend(self.staying(node));
-            } else if let [first, ..] = *own {
-                let all = || near.of_same_node(first as usize).map(candidate);
+            if stays[first] {
+                accepted.extend(self.rule.cache.of_node(sides[0].node).map(|known| Accepted::Stays(known as u32)));
+            } else if !own.is_empty() {
+                let all = || (first..end).map(candidate);
                 self.rule.enter(own.iter().map(|&k| candidate(k as usize)), all, entered, others);
-                accepted.extend_from_slice(entered);
+                accepted.extend((candidates.len()..).map(|k| Accepted::Found(k as u32)).take(entered.len()));
+                candidates.extend_from_slice(entered);
             }
+            first = end;
         }
     }
 
@@ -192,15 +183,6 @@ impl NarrowPhase<'_> {
         let known = &self.rule.history[self.rule.cache.of_node(node)];
         sides.iter().all(|near| near.ends.iter().all(is_still))
             && known.iter().all(|contact| contact.meeting.kept_stiffness == 0.0)
-    }
-
-    /// The contacts of a node in the last step, which stay.
-    fn staying(&self, node: NodeId) -> impl Iterator<Item = ContactCandidate> {
-        self.rule.cache.of_node(node).map(|k| {
-            let ContactHistory { node, side, edge, .. } = self.rule.history[k];
-            let candidate = self.rule.candidate(&NearPair { node, side, edge }, self.last[k].near_side, Some(k as u32));
-            ContactCandidate { stays: true, ..candidate }
-        })
     }
 }
 

@@ -180,13 +180,6 @@ fn pairs_of<'a>(near_sides: &[NearSide], near_pairs: &'a [NearPair], k: usize) -
 }
 
 impl NearRun<'_> {
-    /// Near sides of the node of one of them.
-    pub fn of_same_node(&self, k: usize) -> std::ops::Range<usize> {
-        let is_same = |near: &&NearSide| near.node == self.near_sides[k].node;
-        let before = self.near_sides[..k].iter().rev().take_while(is_same).count();
-        k - before..k + self.near_sides[k..].iter().take_while(is_same).count()
-    }
-
     /// Nodes from the first to the one after the last.
     pub fn nodes(&self) -> [usize; 2] {
         let ends = self.near_sides.first().zip(self.near_sides.last());

@@ -39,8 +39,8 @@ impl Nearest {
     }
 
     /// Finds the nearest edges of a run, which of them nodes may enter, and their contacts of the last step, which were
-    /// found as `last` says, as a rule.
-    pub fn fill(&mut self, rule: &VertexRule, run: NearRun, last: &[FoundContact]) {
+    /// found as `last` says, as a rule; near sides of nodes that stay are left out.
+    pub fn fill(&mut self, rule: &VertexRule, run: NearRun, stays: &[bool], last: &[FoundContact]) {
         let (count, Self { edge, may_enter, known, rest }) = (run.near_sides.len(), &mut *self);
         edge.resize(count, 0);
         known.clear();
@@ -52,13 +52,13 @@ impl Nearest {
         for k in rule.cache.of_nodes(run.nodes()) {
             let contact = &rule.history[k];
             let guess = last.get(k).map_or(usize::MAX, |known| (known.near_side as usize).wrapping_sub(run.first));
-            if let Some(at) = run.of(contact, guess) {
+            if let Some(at) = run.of(contact, guess).filter(|&at| !stays[at]) {
                 known[at] = k as u32;
                 may_enter[at] = u8::from(contact.state != ContactState::Open);
                 rest[at] = contact.unloaded_gap();
             }
         }
-        dispatch(Prefilter { rule, run, nearest: self });
+        dispatch(Prefilter { rule, run, stays, nearest: self });
     }
 }
 
@@ -66,7 +66,8 @@ impl Nearest {
 pub fn prefiltered(rule: &VertexRule, near_sides: &NearSides) -> Vec<bool> {
     let (mut nearest, mut left) = (Nearest::default(), Vec::new());
     for k in 0..near_sides.runs() {
-        nearest.fill(rule, near_sides.run(k), &[]);
+        let run = near_sides.run(k);
+        nearest.fill(rule, run, &vec![false; run.near_sides.len()], &[]);
         left.extend(nearest.may_enter.iter().map(|&may_enter| may_enter != 0));
     }
     left
@@ -76,6 +77,7 @@ pub fn prefiltered(rule: &VertexRule, near_sides: &NearSides) -> Vec<bool> {
 pub(super) struct Prefilter<'a> {
     pub rule: &'a VertexRule<'a>,
     pub run: NearRun<'a>,
+    pub stays: &'a [bool],
     pub nearest: &'a mut Nearest,
 }
 
@@ -102,6 +104,9 @@ impl Kernel for Prefilter<'_> {
         for batch in self.run.batches {
             let (edges, others) = places.split_at(batch.edges as usize);
             places = others;
+            if batch.near_sides.iter().all(|&k| self.stays[k as usize]) {
+                continue;
+            }
             self.batch(lanes, batch, edges);
         }
     }

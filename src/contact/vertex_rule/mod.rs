@@ -77,8 +77,6 @@ pub struct ContactCandidate {
     pub lengths: [f64; 2],
     /// Whether the node enters the edge, as far as the rules have been applied.
     pub accepted: bool,
-    /// Whether the contact stays as it was found.
-    pub stays: bool,
 }
 
 impl ContactCandidate {
@@ -118,7 +116,6 @@ impl VertexRule<'_> {
             is_over: beyond <= self.constants.wedge_ratio * gap.abs() + self.constants.held_beyond * self.size,
             lengths: [f64::INFINITY; 2],
             accepted: false,
-            stays: false,
         }
     }
 
