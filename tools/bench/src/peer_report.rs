@@ -46,7 +46,8 @@ pub fn write_peers(report: &PeerReport, origin: &Origin, directory: &Path) -> io
 /// The comparison as a page.
 pub fn peers_markdown(report: &PeerReport, origin: &Origin) -> String {
     let mut text = String::from("# enmm beside other programs\n\n");
-    let _ = writeln!(text, "{}; enmm {}, {} rounds.\n", origin.label, report.version, report.rounds);
+    let rounds = if report.rounds == 1 { "one round".to_owned() } else { format!("{} rounds", report.rounds) };
+    let _ = writeln!(text, "{}; enmm {}, {rounds}.\n", origin.label, report.version);
     let _ = writeln!(text, "    {}\n\n{INTRODUCTION}\n", origin.command);
     push_machine(&mut text, &report.machine);
     let rows = |row: fn(&Compared, &Timed) -> Vec<String>, of_slopes: bool| {
