@@ -1,5 +1,6 @@
 //! Lift within a step: while a contact slips its asperities lift it, the lift presses it, and it slips less (Eq. 21).
 
+use super::law::shear_on;
 use super::{ContactSetting, Limits, VertexEdge};
 
 /// Trials of a lift at most. The second is exact where spring and friction follow straight lines.
@@ -35,7 +36,7 @@ impl VertexEdge {
             // One that is open climbs as one does that is just in touch: no sweep jumps between both.
             let normal = (slide.normal + per_lift * lift).max(-limits.tension());
             let [friction, cohesion] = limits.line(normal, self.length);
-            let slip = self.slip(slide, (normal * friction + cohesion).max(0.0));
+            let slip = self.slip(slide, shear_on([friction, cohesion], normal));
             let heat = [friction, cohesion].map(|part| part * slip.abs());
             paid(law.rise(self.history.way, slip), heat, [slide.normal, per_lift]) - lift
         };

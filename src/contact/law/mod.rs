@@ -86,13 +86,18 @@ impl Default for Limits {
     }
 }
 
+/// Greatest shear force (N/m) under a normal force (N/m, compression positive) on a line of friction and cohesion (N/m).
+#[inline(always)]
+pub(super) fn shear_on([friction, cohesion]: [f64; 2], normal: f64) -> f64 {
+    (normal * friction + cohesion).max(0.0)
+}
+
 impl Limits {
     /// Greatest shear force (N/m) of a contact of tributary `length` (m) under a normal force (N/m, compression
     /// positive).
     #[inline(always)]
     pub fn shear(self, normal: f64, length: f64) -> f64 {
-        let [friction, cohesion] = self.line(normal, length);
-        (normal * friction + cohesion).max(0.0)
+        shear_on(self.line(normal, length), normal)
     }
 
     /// Friction, and the shear force (N/m) beside it, under a normal force (N/m) over a length (m).

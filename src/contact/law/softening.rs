@@ -1,6 +1,8 @@
 //! Bonds that soften: tensile strength and cohesion that fall with opening and slip, with the energy of fracture that
 //! a law gives (theory §7).
 
+use super::shear_on;
+
 /// How the peak strength of a joint is lost. A mode without energy is lost at once.
 #[doc(alias = "cohesive zone")]
 #[doc(alias = "fracture energy")]
@@ -111,7 +113,7 @@ impl Bond {
 
     /// Shear force (N/m) at the peak and after failure, under a normal force (N/m).
     pub fn strengths(&self, normal: f64) -> [f64; 2] {
-        let [peak, residual] = self.shear.map(|[friction, cohesion]| (normal * friction + cohesion).max(0.0));
+        let [peak, residual] = self.shear.map(|line| shear_on(line, normal));
         [peak, residual.min(peak)]
     }
 

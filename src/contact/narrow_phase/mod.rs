@@ -6,8 +6,6 @@ mod near_sides;
 mod prefilter;
 mod tributary_length;
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use crate::geometry::{Point, Vector};
@@ -16,10 +14,7 @@ use crate::mechanics::StressField;
 use near_sides::{NearRun, NearSide};
 use prefilter::Nearest;
 
-use super::{
-    BondHistory, ContactCandidate, ContactHistory, FoundContact, JointLaw, LawId, NearPair, NodeId, VertexEdge,
-    VertexRule,
-};
+use super::{BondHistory, ContactCandidate, FoundContact, JointLaw, LawId, NearPair, NodeId, VertexEdge, VertexRule};
 
 pub use near_sides::NearSides;
 pub use prefilter::prefiltered;
