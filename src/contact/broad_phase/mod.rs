@@ -114,17 +114,17 @@ impl SearchGrid {
         grid.lay(view);
         let nodes = view.boundary.node_count();
         // Asked outside a pool, the number of threads would start one.
-        let (length, piece) = if view.serial { (nodes.max(1), 1) } else { (RUN, RUNS * rayon::current_num_threads()) };
-        runs.resize_with(nodes.div_ceil(length).min(piece), Run::default);
+        let piece = if view.serial { 1 } else { RUNS * rayon::current_num_threads() };
+        runs.resize_with(nodes.div_ceil(RUN).min(piece), Run::default);
         let find = |first: usize, k: usize, run: &mut Run| {
-            let from = first + k * length;
-            dispatch(Find { grid, view, nodes: from..nodes.min(from + length), run });
+            let from = first + k * RUN;
+            dispatch(Find { grid, view, nodes: from..nodes.min(from + RUN), run });
         };
         let NeighbourList { pairs, found_at } = found;
         pairs.clear();
         // In pieces: the near pairs of all runs together would be as large as the list.
-        for first in (0..nodes).step_by(piece * length) {
-            let count = (nodes - first).div_ceil(length).min(piece);
+        for first in (0..nodes).step_by(piece * RUN) {
+            let count = (nodes - first).div_ceil(RUN).min(piece);
             match &mut runs[..count] {
                 [run] => find(first, 0, run),
                 runs => runs.par_iter_mut().enumerate().for_each(|(k, run)| find(first, k, run)),
