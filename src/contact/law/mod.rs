@@ -86,7 +86,8 @@ impl Default for Limits {
     }
 }
 
-/// Greatest shear force (N/m) under a normal force (N/m, compression positive) on a line of friction and cohesion (N/m).
+/// Greatest shear force (N/m) on a line of friction and cohesion (N/m), under a normal force (N/m, compression
+/// positive).
 #[inline(always)]
 pub(super) fn shear_on([friction, cohesion]: [f64; 2], normal: f64) -> f64 {
     (normal * friction + cohesion).max(0.0)
