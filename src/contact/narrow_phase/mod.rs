@@ -153,7 +153,7 @@ impl NarrowPhase<'_> {
         let (mut rest, mut first) = (likely.as_slice(), 0);
         for sides in by_node() {
             let end = first + sides.len();
-            let (own, later) = rest.split_at(rest.partition_point(|&k| (k as usize) < end));
+            let (own, later) = rest.split_at(rest.iter().take_while(|&&k| (k as usize) < end).count());
             rest = later;
             if stays[first] {
                 accepted.extend(self.rule.cache.of_node(sides[0].node).map(|known| Accepted::Stays(known as u32)));
