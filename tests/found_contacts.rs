@@ -4,7 +4,7 @@
 use enmm::internals::contact::VertexEdge;
 use enmm::model::Simulation;
 
-use crate::common::root;
+use crate::common::{root, without_found};
 
 /// A slope in which some blocks slide and others rest, after as many steps of its last stage.
 fn slope(steps: u64) -> Simulation {
@@ -22,11 +22,7 @@ fn advance(simulation: &mut Simulation, steps: u64) {
 
 /// Contacts of the next step, and those that it would have if it found all of them.
 fn contacts(simulation: &Simulation) -> [Vec<VertexEdge>; 2] {
-    let mut state = simulation.state().clone();
-    state.found.forget();
-    let mut anew = simulation.clone();
-    anew.restore(state);
-    [simulation.contacts(), anew.contacts()]
+    [simulation.contacts(), without_found(simulation).contacts()]
 }
 
 #[test]

@@ -7,18 +7,14 @@ use enmm::internals::contact::{ContactCandidate, VertexRule, prefiltered};
 use enmm::model::Simulation;
 
 use crate::common::extent::by_extent;
-use crate::common::root;
+use crate::common::{root, without_found};
 
 /// Near sides of a step, how many of them the lanes leave, and how many contacts there are.
 type Counts = [usize; 3];
 
 /// Applies the rule to the near sides of the next step, which finds all contacts, and compares.
 fn compare(simulation: &Simulation, case: &str) -> Counts {
-    let (model, mut state) = (simulation.model(), simulation.state().clone());
-    state.found.forget();
-    let mut anew = simulation.clone();
-    anew.restore(state);
-    let (state, workspace) = anew.look_ahead();
+    let (model, (state, workspace)) = (simulation.model(), without_found(simulation).look_ahead());
     let (size, constants) = (model.covers.mesh.size, model.entrance);
     let dt = state.rest_of_step(model);
     let rule = VertexRule {

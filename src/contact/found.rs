@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Point;
 
-use super::{Boundary, EntranceRule, Frames};
+use super::{EntranceRule, Frames};
 
 /// A contact as it is found: its near side, and how long it is. Node, side and edge are in its history.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -66,16 +66,10 @@ impl FoundContacts {
     }
 
     /// Takes over the contacts of the step after as many `steps`, in exchange for those before.
-    pub fn take_over(
-        &mut self,
-        contacts: &mut Vec<FoundContact>,
-        (boundary, frames): (&Boundary, &Frames),
-        steps: u64,
-        rule: &EntranceRule,
-    ) {
+    pub fn take_over(&mut self, contacts: &mut Vec<FoundContact>, frames: &Frames, steps: u64, rule: &EntranceRule) {
         if self.kept_from(steps, rule).is_none() {
             self.found_at.clear();
-            self.found_at.extend(boundary.nodes.point.iter().map(|&point| frames.position(point)));
+            self.found_at.extend(frames.node_positions());
             self.step = steps;
         }
         std::mem::swap(&mut self.contacts, contacts);

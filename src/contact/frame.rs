@@ -98,6 +98,11 @@ impl Frames {
         self.edges[point.index()][0]
     }
 
+    /// Positions of all nodes (m).
+    pub fn node_positions(&self) -> impl ExactSizeIterator<Item = Point> {
+        self.nodes.iter().map(|[position, ..]| *position)
+    }
+
     /// The pairs of all edges.
     pub(super) fn edge_pairs(&self) -> &[Pair] {
         self.edges.as_flattened()

@@ -45,7 +45,7 @@ pub fn search(
     }
     let boundary = &model.boundary;
     let size = model.covers.mesh.size;
-    if state.neighbours.is_stale(boundary, frames, model.entrance.skin() * size) {
+    if state.neighbours.is_stale(frames, model.entrance.skin() * size) {
         let cutoff = model.entrance.cutoff * size;
         let view = SearchView { boundary, frames, cutoff, removed: &state.removed, fixed, serial };
         selection.grid.search(&view, &mut state.neighbours);

@@ -79,3 +79,12 @@ pub fn varied_rules() -> Vec<(String, EntranceRule)> {
     };
     constants.into_iter().flat_map(vary).collect()
 }
+
+/// The same simulation, of which the next step finds all contacts.
+pub fn without_found(simulation: &Simulation) -> Simulation {
+    let mut state = simulation.state().clone();
+    state.found.forget();
+    let mut other = simulation.clone();
+    other.restore(state);
+    other
+}

@@ -18,6 +18,21 @@ pub struct Origin {
     pub command: String,
 }
 
+impl Origin {
+    /// Results of a program with these words; the command is without their label and without their folder.
+    pub fn of(label: &str, program: &str, mut words: impl Iterator<Item = String>) -> Self {
+        let mut command = program.to_owned();
+        while let Some(word) = words.next() {
+            if ["--output", "--label"].contains(&word.as_str()) {
+                words.next();
+            } else {
+                command.extend([" ", &word]);
+            }
+        }
+        Self { label: label.to_owned(), command }
+    }
+}
+
 /// Files of a report: data, page, and the plots of steps and of slopes.
 pub const REPORT_FILES: [&str; 4] = ["results.json", "results.md", "step.svg", "slope.svg"];
 

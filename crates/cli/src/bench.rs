@@ -77,8 +77,8 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         Ok(report) => report,
         Err(error) => return fail(&error, FAILED),
     };
-    let written =
-        arguments.output.as_ref().map_or(Ok(()), |folder| write_report(&report, &origin(&arguments.label), folder));
+    let origin = Origin::of(&arguments.label, "enmm", std::env::args().skip(1));
+    let written = arguments.output.as_ref().map_or(Ok(()), |folder| write_report(&report, &origin, folder));
     print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text(&report) });
     written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
 }
@@ -96,11 +96,6 @@ fn write_cases(models: &[Model], folder: &Path) -> ExitCode {
     };
     let refused = |error| format!("cannot write to {} ({error}): choose another directory", folder.display());
     write().map_err(refused).map_or_else(|message| fail(&message, BAD_INPUT), |()| ExitCode::SUCCESS)
-}
-
-fn origin(label: &str) -> Origin {
-    let command: Vec<String> = std::env::args().skip(1).collect();
-    Origin { label: label.to_owned(), command: format!("enmm {}", command.join(" ")) }
 }
 
 fn models(names: &[String]) -> Result<Vec<Model>, &str> {

@@ -44,14 +44,10 @@ pub struct NeighbourList {
 
 impl NeighbourList {
     /// Whether a node has moved more than `slack` (m) since the last search.
-    pub fn is_stale(&self, boundary: &Boundary, frames: &Frames, slack: f64) -> bool {
-        self.found_at.len() != boundary.node_count()
-            || boundary
-                .nodes
-                .point
-                .iter()
-                .zip(&self.found_at)
-                .any(|(&p, old)| (frames.position(p) - old).norm_squared() > slack * slack)
+    pub fn is_stale(&self, frames: &Frames, slack: f64) -> bool {
+        let now = frames.node_positions();
+        self.found_at.len() != now.len()
+            || now.zip(&self.found_at).any(|(now, old)| (now - old).norm_squared() > slack * slack)
     }
 
     /// Positions of the nodes at the last search (m); empty when the next step has to search again.
@@ -132,6 +128,6 @@ impl SearchGrid {
             runs[..count].iter().for_each(|run| pairs.extend_from_slice(&run.near_pairs));
         }
         found_at.clear();
-        found_at.extend(view.boundary.nodes.point.iter().map(|&point| view.frames.position(point)));
+        found_at.extend(view.frames.node_positions());
     }
 }

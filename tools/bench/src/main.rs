@@ -63,7 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (duration, builds) = (arguments.duration, target.join("peers"));
     let options = PeerOptions { models, peers, rounds, duration, sources, builds };
     let report = compare(&options, &mut |what| eprintln!("{what} …")).map_err(|error| error.to_string())?;
-    let origin = Origin { label: arguments.label.clone(), command: command(std::env::args().skip(1)) };
+    let origin = Origin::of(&arguments.label, "cargo xtask bench", std::env::args().skip(1));
     if let Some(folder) = &arguments.output {
         write_peers(&report, &origin, folder).map_err(|error| error.to_string())?;
     }
@@ -81,19 +81,6 @@ fn duration(text: &str) -> Result<f64, String> {
     let is_whole = (steps - steps.round()).abs() < 1e-6;
     let is_valid = is_whole && (1.0..=3600.0).contains(&steps.round());
     is_valid.then(|| steps.round() / 60.0).ok_or_else(|| "it must be whole sixtieths of a second, 1 to 3600".to_owned())
-}
-
-/// The command of the repository with these words, without folder and label, which it adds itself.
-fn command(mut words: impl Iterator<Item = String>) -> String {
-    let mut command = String::from("cargo xtask bench");
-    while let Some(word) = words.next() {
-        if ["--output", "--label"].contains(&word.as_str()) {
-            words.next();
-        } else {
-            command.extend([" ", &word]);
-        }
-    }
-    command
 }
 
 fn peers(names: &[String]) -> Result<Vec<Peer>, String> {

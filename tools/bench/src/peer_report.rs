@@ -7,6 +7,7 @@ use std::path::Path;
 use super::peers::{Compared, PeerReport, Timed};
 use enmm_bench::{Origin, digits, none, push_machine, push_table};
 use enmm_io::files::{at_path, write_atomic};
+use enmm_picture::counted;
 
 const INTRODUCTION: &str = "\
 Every program simulates the same polygons of blocks from the same first instant, on one thread, turn by turn in rounds
@@ -46,7 +47,7 @@ pub fn write_peers(report: &PeerReport, origin: &Origin, directory: &Path) -> io
 /// The comparison as a page.
 pub fn peers_markdown(report: &PeerReport, origin: &Origin) -> String {
     let mut text = String::from("# enmm beside other programs\n\n");
-    let rounds = if report.rounds == 1 { "one round".to_owned() } else { format!("{} rounds", report.rounds) };
+    let rounds = counted(report.rounds, "round");
     let _ = writeln!(text, "{}; enmm {}, {rounds}.\n", origin.label, report.version);
     let _ = writeln!(text, "    {}\n\n{INTRODUCTION}\n", origin.command);
     push_machine(&mut text, &report.machine);
