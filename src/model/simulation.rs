@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::contact::{BoltState, EntranceRule, JointLaw, LawId, VertexEdge};
+use crate::contact::{BoltState, EntranceRule, JointLaw, LawId, SideId, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, polygon};
 use crate::state::{Drive, Event, EventKind, Ledger, Model, MostRest, State, Workspace};
@@ -135,6 +135,15 @@ impl Simulation {
     pub fn assume_small_displacements(&mut self) {
         self.built.state.found.forget();
         self.workspace.selection.kept_gaps = Some(Vec::new());
+    }
+
+    /// Leaves out the contacts of nodes of a block with a side, as often as there are pairs, in later steps. A new stage
+    /// or another state ends this.
+    pub fn leave_out(&mut self, mut contacts: Vec<(BlockId, SideId)>) {
+        contacts.sort_unstable();
+        self.workspace.selection.left_out = contacts;
+        self.built.state.neighbours.forget();
+        self.built.state.found.forget();
     }
 
     /// Inputs of the host, to be changed.

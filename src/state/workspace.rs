@@ -138,6 +138,8 @@ pub struct SelectionBuffers {
     /// Gaps (m) that contacts of small displacements had without any displacement (Eq. 62a); empty until a step finds
     /// them.
     pub kept_gaps: Option<Vec<f64>>,
+    /// Nodes of which block make no contact with which side, sorted.
+    pub left_out: Vec<(BlockId, SideId)>,
 }
 
 /// The face that the contacts of one block with one side are, in a step.

@@ -1,6 +1,6 @@
 //! Who touches whom: positions of the boundary, near pairs, and the contacts of a sub-step of either integrator.
 
-use crate::contact::{self, EdgeId, Frames, NarrowPhase, OpenClose, SearchView, VertexEdge, VertexRule};
+use crate::contact::{self, EdgeId, Frames, NarrowPhase, NearPair, OpenClose, SearchView, VertexEdge, VertexRule};
 use crate::geometry::{Point, Vector};
 use crate::state::{Model, SelectionBuffers, State};
 
@@ -49,6 +49,10 @@ pub fn search(
         let cutoff = model.entrance.cutoff * size;
         let view = SearchView { boundary, frames, cutoff, removed: &state.removed, fixed, serial };
         selection.grid.search(&view, &mut state.neighbours);
+        if !selection.left_out.is_empty() {
+            let block = |pair: &NearPair| boundary.block[boundary.nodes.point[pair.node]];
+            state.neighbours.pairs.retain(|pair| selection.left_out.binary_search(&(block(pair), pair.side)).is_err());
+        }
         selection.near_sides.forget();
         state.found.forget();
         open_close.forget_order();

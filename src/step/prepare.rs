@@ -26,6 +26,7 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     selection.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
     selection.near_sides.forget();
     selection.kept_gaps = None;
+    selection.left_out.clear();
     expose(model, &mut motion.exposed);
     hold(model, state, workspace);
     workspace.sweep.open_close.prepare(&workspace.mass_matrix, &model.supports, &workspace.supports.rows);

@@ -61,7 +61,8 @@ pub struct Bolt {
     /// Force (N) at which one bar yields; default: never.
     #[serde(default)]
     pub yield_force: Option<f64>,
-    /// Elongation of the free length, relative to it, at which the bar breaks; default: never.
+    /// Elongation of the free length, relative to it, at which the bar breaks; default: 0.1, as of
+    /// bars of steel, if it has a yield force, else never. Strands break at 0.035.
     #[serde(default)]
     pub rupture_strain: Option<f64>,
     /// Force (N) of one bar when it is installed.
@@ -132,7 +133,8 @@ pub struct BoltPattern {
     /// Force (N) at which one bar yields; default: never.
     #[serde(default)]
     pub yield_force: Option<f64>,
-    /// Elongation of the free length, relative to it, at which the bar breaks; default: never.
+    /// Elongation of the free length, relative to it, at which the bar breaks; default: 0.1, as of
+    /// bars of steel, if it has a yield force, else never. Strands break at 0.035.
     #[serde(default)]
     pub rupture_strain: Option<f64>,
     /// Force (N) of one bar when it is installed.

@@ -924,6 +924,18 @@ pub enum Integrator {
     Implicit,
 }
 
+/// What becomes of corner contacts: corners of blocks that meet, in a point or over a short length, a side which rises
+/// in front of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum CornerContacts {
+    /// They carry force.
+    Hold,
+    /// They carry none where it would be more than the rock over their length bears.
+    Break,
+}
+
 /// Newmark's rule of the implicit integrator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -964,6 +976,10 @@ pub struct Solver {
     /// slide as far on any mesh; 0 is Coulomb friction at once. Default: a shear wave's way through the blocks that
     /// hang together, or 0.02 s if that is less.
     pub friction_delay: Option<f64>,
+    /// Factor of safety: whether corner contacts hold or break; default: both are tried where they carry the slope, and
+    /// the lower factor is the result.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corner_contacts: Option<CornerContacts>,
     /// Most sweeps of the open–close iteration in a step.
     pub sweeps_max: u32,
     /// Penetration, relative to the mesh size, at which the run stops as failed.
@@ -998,6 +1014,7 @@ impl Default for Solver {
             contact_theta: 4.0,
             contact_tolerance: 1e-2,
             friction_delay: None,
+            corner_contacts: None,
             sweeps_max: 100,
             penetration_limit: 0.2,
             mass_scaling: 1.0,

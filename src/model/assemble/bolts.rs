@@ -9,6 +9,8 @@ use super::locator::Locator;
 
 /// Free length of a grouted bar at a joint, relative to the mesh size.
 const FREE_LENGTH: f64 = 0.1;
+/// Elongation of a bar of steel, relative to its free length, at which it breaks.
+const RUPTURE_STRAIN: f64 = 0.1;
 /// Distance, relative to the mesh size, at which the rock on both sides of a crossing is looked up.
 const BESIDE: f64 = 1e-3;
 
@@ -169,9 +171,14 @@ impl<'a> Line<'a> {
             points,
             stiffness: bolt.young * bolt.area / (free_length * bolt.spacing),
             yield_force: bolt.yield_force.map_or(f64::INFINITY, |force| force / bolt.spacing),
-            rupture: bolt.rupture_strain.map_or(f64::INFINITY, |strain| strain * free_length),
+            rupture: rupture_strain(bolt).map_or(f64::INFINITY, |strain| strain * free_length),
             pretension: bolt.pretension / bolt.spacing,
             active: bolt.active,
         }
     }
+}
+
+/// Elongation at which a bar breaks: as given, else that of steel where it yields.
+fn rupture_strain(bolt: &Bolt) -> Option<f64> {
+    bolt.rupture_strain.or(bolt.yield_force.map(|_| RUPTURE_STRAIN))
 }
