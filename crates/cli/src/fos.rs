@@ -206,6 +206,7 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
     } else if let Some(least) = reduction.at_least() {
         tell("factor of safety", format!("at least {least:.4}"));
     }
+    reduction.others().into_iter().for_each(|(name, text)| tell(name, text));
     match (&reduction.bracket, &reduction.bound) {
         (Some(bracket), _) => {
             tell(
@@ -227,7 +228,7 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
         tell("bolts", bolts);
     }
     if reduction.trials.iter().any(|trial| trial.verdict == Verdict::Caught) {
-        tell("caught", "slid farther than elasticity explains and came to rest again: not stable".to_owned());
+        tell("caught", "flowed farther than elasticity explains and came to rest again: not stable".to_owned());
     }
     if let Some(trial) = reduction.first_unstable() {
         tell("mechanism", mechanism(trial, reduction, found));

@@ -133,12 +133,13 @@ impl Chart {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
         };
-        let tried = range(&mut reduction.trials.iter().map(|t| t.factor));
+        let all = || reduction.trials.iter().chain(reduction.lost.iter().flat_map(|lost| &lost.trials));
+        let tried = range(&mut all().map(|t| t.factor));
         let near = |factor: &f64| *factor <= BOUND_FAR * tried[1] && *factor >= tried[0] / BOUND_FAR;
         let bounds = bounds(reduction).into_iter().map(|(_, factor)| factor.value()).filter(near);
         let [low, high] = range(&mut tried.into_iter().chain(bounds));
         let margin = 0.05 * (high - low).max(0.02 * high);
-        let displacements = &mut reduction.trials.iter().map(|t| t.displacement);
+        let displacements = &mut all().map(|t| t.displacement);
         let [least, most] = range(&mut displacements.filter(|v| *v > 0.0 && v.is_finite()));
         let (least, most) = if least <= most { (least, most) } else { (0.1, 1.0) };
         let top = libm::log10(most) + 0.3;
@@ -168,6 +169,12 @@ impl Chart {
         let mut line = Path::default();
         line.line(drawable().map(position));
         sheet.path(line, Style::line(GREY, 1.4));
+        if let Some(lost) = &reduction.lost {
+            let mut line = Path::default();
+            line.line(lost.trials.iter().filter(|trial| trial.displacement.is_finite()).map(position));
+            sheet.path(line, Style::line(GREY, 1.4).dashed());
+            lost.trials.iter().for_each(|trial| draw_verdict(sheet, trial.verdict, position(trial)));
+        }
         self.draw_factors(sheet, reduction);
         drawable().for_each(|trial| draw_verdict(sheet, trial.verdict, position(trial)));
         sheet.rect(&self.frame, Style::line(INK, 1.2));

@@ -23,7 +23,7 @@ use enmm_picture::{failure_picture, trials_picture};
 use enmm_report::PAGE;
 use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, HELD, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
-    TOLERANCE, Trial, mechanisms,
+    Series, TOLERANCE, Trial, mechanisms,
 };
 use enmm_stability::up_to_stage;
 
@@ -271,10 +271,51 @@ fn search_record(reduction: &Reduction) -> Value {
         "notes": reduction.simulation.built().notes,
         "warnings": reduction.warnings,
     });
+    if let Value::Object(record) = &mut record {
+        record.extend(others_record(reduction));
+    }
     if let Some(doubt) = reduction.doubt() {
         record["doubt"] = json!(doubt);
     }
     record
+}
+
+/// The factors beside the headline: where corners hold, where the slope is lost, and before nudges.
+fn others_record(reduction: &Reduction) -> serde_json::Map<String, Value> {
+    let corners = reduction.corners.as_ref();
+    let held = corners.map(|corners| &corners.series);
+    let carrying = corners.map_or(&[][..], |corners| &corners.corners).iter().map(|carrying| {
+        let at = carrying.corner.ends[0];
+        json!({
+            "block": carrying.corner.block.number(),
+            "ahead": carrying.corner.ahead.number(),
+            "x": at.x,
+            "y": at.y,
+            "length": carrying.corner.length(),
+            "force": carrying.force,
+            "strength": carrying.corner.strength,
+        })
+    });
+    let others = [
+        ("factor_corners_hold", json!(held.and_then(Series::factor))),
+        ("corners_hold", json!(held.map(series_record))),
+        ("corner_contacts", carrying.collect()),
+        ("factor_lost", json!(reduction.lost.as_ref().and_then(Series::factor))),
+        ("lost", json!(reduction.lost.as_ref().map(series_record))),
+        ("first_yield", json!(reduction.first_yield())),
+        ("factor_before_nudges", json!(reduction.before_nudges)),
+    ];
+    others.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+/// A search in another setting as an object.
+fn series_record(series: &Series) -> Value {
+    json!({
+        "status": end_name(&series.end),
+        "at_least": series.at_least(),
+        "bracket": { "stable": series.low, "unstable": series.high },
+        "trials": series.trials.iter().map(trial_record).collect::<Vec<_>>(),
+    })
 }
 
 fn block_record(block: &FailingBlock) -> Value {
@@ -295,6 +336,8 @@ fn trial_record(trial: &Trial) -> Value {
         "factor": trial.factor,
         "verdict": trial.verdict.name(),
         "reason": trial.reason.name(),
+        "geometry": trial.geometry.name(),
+        "rests_after": trial.is_far,
         "time": trial.time,
         "displacement": trial.displacement,
         "slip": trial.slip,

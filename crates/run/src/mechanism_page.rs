@@ -172,14 +172,15 @@ fn trials(search: &Reduction, name: &str) -> TrialTable {
         (None, Err(refused)) => format!("limit analysis: none, {refused}"),
     };
     let mechanism = if name.is_empty() { String::new() } else { format!("mechanism{name}: ") };
-    TrialTable { result: format!("{mechanism}{result}; {bound}"), trials: search.trials.iter().map(row).collect() }
+    let others: String = search.others().into_iter().map(|(name, text)| format!("; {name}: {text}")).collect();
+    TrialTable { result: format!("{mechanism}{result}{others}; {bound}"), trials: search.trials.iter().map(row).collect() }
 }
 
 fn row(trial: &Trial) -> Row {
     Row {
         factor: trial.factor,
         verdict: trial.verdict.name().to_owned(),
-        reason: trial.reason.name().to_owned(),
+        reason: trial.word(),
         time: trial.time,
         displacement: trial.displacement,
         speed: trial.speed,

@@ -10,6 +10,9 @@ use enmm::model::case::{Case, StageKind, Support};
 /// Stiffness of a bar whose force is given, over that of steel: a metre of slip changes the force by a few per cent.
 const SOFT: f64 = 1e-4;
 
+/// Strain at rupture of a bar whose force is given: it stretches with the rock.
+const NEVER: f64 = 1e6;
+
 /// The case with each bolt that is an active or a passive support at its pretension or its yield force, which hardly
 /// change as the rock moves.
 pub fn with_support_forces(case: &Case) -> Case {
@@ -21,6 +24,7 @@ pub fn with_support_forces(case: &Case) -> Case {
             Some(Support::Passive) => bolt.yield_force.unwrap_or(bolt.pretension),
         };
         bolt.young *= SOFT;
+        bolt.rupture_strain = bolt.rupture_strain.or(Some(NEVER));
     }
     case
 }

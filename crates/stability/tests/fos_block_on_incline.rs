@@ -78,18 +78,18 @@ fn a_factor_above_limit_analysis_is_in_doubt() {
     assert!(doubt.contains("above what limit analysis of rigid blocks allows"), "{doubt}");
 }
 
-/// The friction of the first test, with a wall 20 mm below the block: it slides and is caught, which is no strength.
+/// The friction of the first test, with a wall 20 mm below the block: it starts to move as it does without, whether it
+/// reaches the wall or not.
 #[test]
-fn a_block_that_a_wall_catches_is_not_stable() {
+fn a_block_that_a_wall_would_catch_starts_to_move_as_without_it() {
     let wall = [[8.0, 0.5], [3.02, 0.5], [3.02, 0.0]];
     let reduction = reduce(&case_below(&wall, 40.0, 0.0, ""), 1);
     let exact = 40f64.to_radians().tan() / 30f64.to_radians().tan();
     let factor = reduction.factor().expect("a factor");
     assert!((factor / exact - 1.0).abs() < 5e-3, "{factor} of {exact}");
-    let caught = reduction.trials.iter().filter(|t| t.verdict == Verdict::Caught);
-    assert!(caught.clone().all(|t| (0.015..0.03).contains(&t.slip) && t.failing.len() == 1) && caught.count() > 0);
     assert!(reduction.trials.iter().all(|t| (t.verdict == Verdict::Stable) == (t.factor < exact)), "monotone");
-    assert!(reduction.warnings.iter().any(|w| w.contains("caught")), "{:?}", reduction.warnings);
+    let lost = reduction.lost.as_ref().expect("trials in the real geometry");
+    assert!(lost.low >= reduction.low && reduction.corners.is_none(), "{:?}", reduction.others());
     let bound = reduction.bound.as_ref().expect("a bound").level_tops.factor.value();
     assert!((bound / exact - 1.0).abs() < 3e-4, "{bound}: limit analysis knows no way to go");
 }

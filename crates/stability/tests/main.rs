@@ -4,6 +4,7 @@ mod bridges;
 #[path = "../../../tests/common/mod.rs"]
 mod common;
 mod continuum;
+mod corners;
 mod examples_of_claims;
 mod fos_against_bound;
 mod fos_block_on_incline;

@@ -3,7 +3,7 @@
 use super::{End, Verdict};
 
 /// Ratio of neighbouring trials until the limit is bracketed.
-const STRIDE: f64 = 1.5;
+pub const STRIDE: f64 = 1.5;
 
 /// The first pair of factors: the given limits, or the strength of the case and less.
 pub fn start(low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
@@ -17,14 +17,25 @@ pub fn start(low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
 pub struct Search {
     range: [f64; 2],
     tolerance: f64,
-    start: [f64; 2],
+    /// The first pair, until it is tried.
+    start: Option<[f64; 2]>,
     tried: Vec<(f64, Verdict)>,
 }
 
 impl Search {
     /// Begins with a pair of factors; keeps within `range`.
     pub fn new(start: [f64; 2], range: [f64; 2], tolerance: f64) -> Self {
-        Self { range, tolerance, start, tried: Vec::new() }
+        Self { range, tolerance, start: Some(start), tried: Vec::new() }
+    }
+
+    /// A search in the same range to the same tolerance that begins with another pair.
+    pub fn again(&self, start: [f64; 2]) -> Self {
+        Self::new(start, self.range, self.tolerance)
+    }
+
+    /// Number of verdicts so far.
+    pub fn made(&self) -> usize {
+        self.tried.len()
     }
 
     /// Keeps a verdict.
@@ -48,14 +59,13 @@ impl Search {
             _ => STRIDE,
         };
         let thirds = libm::log((libm::log(width) / libm::log1p(self.tolerance)).max(1.0)) / libm::log(3.0);
-        let pair = if self.tried.is_empty() { 2 } else { 0 };
+        let pair = if self.start.is_some() { 2 } else { 0 };
         self.tried.len() + pair + 2 * (thirds - 1e-9).ceil().max(0.0) as usize
     }
 
     /// One or two factors to try next; none when the search is over.
-    pub fn next(&self) -> Option<(f64, Option<f64>)> {
-        if self.tried.is_empty() {
-            let [a, b] = self.start;
+    pub fn next(&mut self) -> Option<(f64, Option<f64>)> {
+        if let Some([a, b]) = self.start.take() {
             return Some((a, (b > a).then_some(b)));
         }
         match self.bracket() {

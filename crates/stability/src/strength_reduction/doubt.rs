@@ -1,5 +1,6 @@
 //! Doubts about a factor of safety that follow from its trials.
 
+use super::corners::{CarryingCorner, CornersHold};
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
 use crate::limit_analysis::Bound;
 use enmm::model::case::Case;
@@ -59,8 +60,8 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     let mut doubts = Vec::new();
     doubts.extend(not_monotone(trials));
     doubts.extend(slid(trials, |t| t.verdict == Verdict::Caught, "were caught: that does not count as stable"));
-    let held = "then held, in small displacements as well: that counts as stable";
-    doubts.extend(slid(trials, |t| t.reason == Reason::Hardening, held));
+    doubts.extend(reduction.corners.as_ref().map(CornersHold::doubt));
+    doubts.extend(far(trials));
     doubts.extend(reduction.doubt());
     doubts.extend(undecided(trials));
     doubts.extend(loose(reduction));
@@ -75,6 +76,31 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
         ));
     }
     doubts
+}
+
+impl CornersHold {
+    /// That corners hold the slope.
+    fn doubt(&self) -> String {
+        let corners: Vec<String> = self.corners.iter().map(CarryingCorner::text).collect();
+        format!(
+            "corners that meet rock ahead of them carry the slope: {}, which is more than rock of {:.0} MPa bears there; \
+             the factor is that without them, {} with them; solver.corner_contacts = \"hold\" counts them",
+            corners.join(", "),
+            self.corners.iter().map(|corner| corner.corner.strength).fold(f64::INFINITY, f64::min) / 1e6,
+            self.series.text()
+        )
+    }
+}
+
+/// Stable trials in which blocks moved far before they rested.
+fn far(trials: &[Trial]) -> Option<String> {
+    let far = |t: &&Trial| t.verdict == Verdict::Stable && t.is_far;
+    let first = trials.iter().find(far)?;
+    let last = trials.iter().rfind(far)?;
+    Some(format!(
+        "from F = {:.4} on the slope rests only after its blocks have moved, by {:.2} m at F = {:.4}",
+        first.factor, last.displacement, last.factor
+    ))
 }
 
 fn not_monotone(trials: &[Trial]) -> Option<String> {

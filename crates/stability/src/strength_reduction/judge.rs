@@ -1,13 +1,16 @@
 //! Whether a slope is stable at a reduced strength, from its motion alone.
 
+use super::setting::Geometry;
+
 /// Whether the slope is stable at the strength of a trial.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Verdict {
-    /// Motion has died, and elasticity explains how far it went.
+    /// Motion has died; where rock yields, elasticity explains how far it went.
     Stable,
-    /// Motion has died or is dying, but joints slipped or rock flowed farther than that: it is caught, not held.
+    /// Motion has died or is dying, but rock flowed farther than that: it is caught, not held.
     Caught,
     /// It fails.
+    #[default]
     Unstable,
 }
 
@@ -23,18 +26,19 @@ impl Verdict {
 }
 
 /// Reason of a verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Reason {
     /// Speeds, energy and growth of displacements have died.
+    #[default]
     Rest,
-    /// Joints slipped farther than elasticity explains and came to rest, and do so in small displacements as well.
-    Hardening,
     /// A block is beyond the limit displacement, and the kinetic energy grows.
     Runaway,
     /// Speed grows in a straight line, beyond what the rock's elasticity can give way.
     Acceleration,
     /// Time was over: the growth of displacements decided.
     Trend,
+    /// It rested, and a nudge made it fail.
+    Nudge,
 }
 
 impl Reason {
@@ -42,10 +46,10 @@ impl Reason {
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
-            Self::Hardening => "hardening",
             Self::Runaway => "runaway",
             Self::Acceleration => "acceleration",
             Self::Trend => "trend",
+            Self::Nudge => "nudge",
         }
     }
 }
@@ -84,6 +88,20 @@ pub struct Scales {
     pub elastic: f64,
     /// Displacement of a failed block (m).
     pub limit: f64,
+    /// Whether what went farther than elasticity explains is caught, as rock that yields is: it may have flowed for
+    /// ever on a finer mesh.
+    pub catches: bool,
+    /// Windows in a row in which the kinetic energy of a failed block's motion must grow.
+    pub runs: usize,
+}
+
+impl Scales {
+    /// Those of a motion in a geometry under a course of a `time` (s). Small displacements catch nothing: there a block
+    /// far gone has failed when its energy has grown as long as a speed in a straight line must.
+    pub fn of(&self, time: f64, geometry: Geometry) -> Self {
+        let runs = if geometry == Geometry::Drawn { WINDOWS } else { 1 };
+        Self { time_max: self.time_max - self.ramp + time, ramp: time, runs, ..*self }
+    }
 }
 
 /// Windows through which the speed must grow in a straight line.
@@ -99,10 +117,10 @@ const ENDLESS: f64 = 0.7;
 
 /// Judges a trial by its samples so far (Eqs. 62–65); none while it is open.
 pub fn judge(samples: &[Sample], scales: &Scales) -> Option<(Verdict, Reason)> {
-    let (last, before) = (samples.last()?, samples.iter().rev().nth(1)?);
-    let is_caught = last.slip > scales.elastic || last.displacement > scales.limit;
-    let held = if is_caught { Verdict::Caught } else { Verdict::Stable };
-    if last.displacement > scales.limit && last.kinetic > before.kinetic {
+    let last = samples.last()?;
+    let is_far = last.slip > scales.elastic || last.displacement > scales.limit;
+    let held = if scales.catches && is_far { Verdict::Caught } else { Verdict::Stable };
+    if last.displacement > scales.limit && grows(samples, scales.runs) {
         return Some((Verdict::Unstable, Reason::Runaway));
     }
     let first = samples.partition_point(|s| s.time <= scales.ramp);
@@ -117,6 +135,12 @@ pub fn judge(samples: &[Sample], scales: &Scales) -> Option<(Verdict, Reason)> {
         let holds = last.displacement <= scales.elastic || ends(after, scales);
         (if holds { held } else { Verdict::Unstable }, Reason::Trend)
     })
+}
+
+/// Whether the kinetic energy has grown through as many windows as there are `runs`.
+fn grows(samples: &[Sample], runs: usize) -> bool {
+    let last = &samples[samples.len().saturating_sub(runs + 1)..];
+    last.len() > runs && last.windows(2).all(|pair| pair[1].kinetic > pair[0].kinetic)
 }
 
 /// Slow, poor in energy and going nowhere, in each of the windows (Eq. 62).
@@ -174,6 +198,8 @@ mod tests {
         still_kinetic: 1e-5,
         elastic: 2e-3,
         limit: 0.5,
+        catches: true,
+        runs: 1,
     };
 
     /// Samples of a motion given as displacement and speed over time, until it is judged.

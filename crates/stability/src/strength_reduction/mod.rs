@@ -1,17 +1,23 @@
 //! Factor of safety by strength reduction: the case at rest, then trials with its strength divided by F until the
 //! greatest stable F is known (theory, section 16).
 
+mod answer;
 mod bracket;
+mod corners;
 mod doubt;
 mod judge;
+mod lost;
 mod mechanism;
 mod reference;
+mod series;
+mod setting;
 mod slip;
+mod toppling;
 mod trial;
 
 use std::sync::atomic::AtomicBool;
 
-use enmm::geometry::Point;
+use enmm::geometry::{Point, Vector};
 use enmm::model::StepError;
 
 use super::limit_analysis::continuum::{self, Bracket};
@@ -19,9 +25,15 @@ use super::limit_analysis::{self, Bound};
 use enmm::model::case::{Case, Invalid};
 use enmm::model::{ExplicitAlone, Integrators, Simulation};
 
+pub use corners::{CarryingCorner, CornersHold};
 pub use judge::{Reason, Verdict};
 pub use mechanism::{CHIP, MechanismOptions, mechanisms};
+pub use series::Series;
+pub use setting::Geometry;
 pub use slip::slide;
+
+use series::Trials;
+use setting::Setting;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
@@ -53,10 +65,12 @@ impl Default for ReductionOptions<'_> {
 }
 
 /// One trial: the slope at rest, its strength divided by `factor`, and what became of it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trial {
     /// F.
     pub factor: f64,
+    /// Geometry in which it was to rest.
+    pub geometry: Geometry,
     /// Whether the slope is stable at it.
     pub verdict: Verdict,
     /// Reason of the verdict.
@@ -85,9 +99,22 @@ pub struct Trial {
     pub ledger_residual: f64,
     /// Wall time (s).
     pub wall: f64,
+    /// Whether blocks have moved farther than rock that stands does: by ten times its displacement at rest, or by a
+    /// hundredth of the height.
+    pub is_far: bool,
+    /// Whether a bar has yielded or broken.
+    pub bars_yield: bool,
 }
 
 impl Trial {
+    /// Reason of the verdict in words: `rests after 0.31 m` where a slope moves far before it rests.
+    pub fn word(&self) -> String {
+        match self.reason {
+            Reason::Rest if self.is_far => format!("rests after {:.2} m", self.displacement),
+            reason => reason.name().to_owned(),
+        }
+    }
+
     /// Area (m²) of the blocks that fail.
     pub fn failing_area(&self) -> f64 {
         self.failing.iter().map(|block| block.area).sum()
@@ -121,6 +148,8 @@ pub struct FailingBlock {
     pub mass: f64,
     /// Largest displacement of its covers since the trial began (m).
     pub displacement: f64,
+    /// Displacement of its centroid since then (m).
+    pub way: Vector,
     /// Turn since the trial began (rad), counter-clockwise.
     pub rotation: f64,
     /// Speed at the end (m/s).
@@ -148,7 +177,7 @@ const TRIANGLES: usize = 1000;
 /// Result of a search.
 #[derive(Debug, Clone)]
 pub struct Reduction {
-    /// All trials, ascending in F.
+    /// The trials that decide, ascending in F.
     pub trials: Vec<Trial>,
     /// Greatest F that was stable, below every other.
     pub low: Option<f64>,
@@ -156,6 +185,12 @@ pub struct Reduction {
     pub high: Option<f64>,
     /// How the search ended.
     pub end: End,
+    /// Corners that carry the slope, with the search in which they hold; none where they do not decide.
+    pub corners: Option<CornersHold>,
+    /// The factor before nudges, where the slope fails by turning and its greatest stable trial was nudged.
+    pub before_nudges: Option<f64>,
+    /// The trials in the real geometry, where they were made: beyond their limit the slope is lost.
+    pub lost: Option<Series>,
     /// Time (s) and steps that coming to rest took.
     pub rest: (f64, u64),
     /// Area (m²) of all blocks that can move and have no support.
@@ -233,56 +268,47 @@ pub fn factor_of_safety(
     options: &ReductionOptions,
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Reduction, ReductionError> {
-    let rest = reference::settle(case, options)?;
+    let mut rest = reference::settle(case, options)?;
     let base = trial::Base::new(rest.simulation, options.tolerance);
-    let run = |factor: f64| base.run(factor, options.interrupt);
     let range = [options.low.unwrap_or(FACTOR_RANGE[0]), options.high.unwrap_or(FACTOR_RANGE[1])];
-    let start = bracket::start(options.low, options.high, range);
-    let mut search = bracket::Search::new(start, range, options.tolerance);
-    let mut trials: Vec<Trial> = Vec::new();
-    let mut unstable: Option<(f64, Simulation)> = None;
-    let mut end = None;
-    while let (None, Some(pair)) = (&end, search.next()) {
-        let both = match pair {
-            (a, Some(b)) => {
-                let (a, b) = rayon::join(|| run(a), || run(b));
-                vec![a, b]
-            }
-            (a, None) => vec![run(a)],
-        };
-        for outcome in both {
-            match outcome {
-                Ok((trial, simulation)) => {
-                    search.note(trial.factor, trial.verdict);
-                    hear(&trial, Progress { trials: trials.len() + 1, expected: search.expected() });
-                    let is_least = unstable.as_ref().is_none_or(|(f, _)| trial.factor < *f);
-                    if trial.verdict != Verdict::Stable && is_least {
-                        unstable = Some((trial.factor, simulation));
-                    }
-                    trials.push(trial);
-                }
-                Err(trial::Stop::Interrupted) => _ = end.get_or_insert(End::Interrupted),
-                Err(trial::Stop::Failed(error)) => _ = end.get_or_insert(End::Failed(error)),
-            }
-        }
-    }
-    trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let end = end.unwrap_or_else(|| search.end());
-    let (bound, bracket) = second_opinion(case, &end);
-    let [low, high] = search.bracket();
+    let search = bracket::Search::new(bracket::start(options.low, options.high, range), range, options.tolerance);
+    let geometry = if case.yields() { Geometry::Real } else { Geometry::Drawn };
+    let setting = Setting { geometry, left_out: Vec::new() };
+    let mut trials = Trials { base: &base, interrupt: options.interrupt, hear, made: 0 };
+    let held = trials.series(search.clone(), &setting);
+    let lost = lost::look(&mut trials, &held, &setting, &search);
+    let both: Vec<&Series> = std::iter::once(&held).chain(&lost).collect();
+    let carrying = corners::carrying(&base.simulation, &both);
+    let (series, lost, corners, setting) = if carrying.is_empty() || held.low.is_none() {
+        (held, lost, None, setting)
+    } else {
+        let broken = corners::without(&carrying, &setting);
+        let mut series = trials.series(corners::below(&held, &search, options, range), &broken);
+        series.take_top(&held);
+        let lost_too = lost::look(&mut trials, &series, &broken, &search);
+        let hold = CornersHold { corners: carrying, series: lost.unwrap_or(held) };
+        let decide = hold.decide(&series, lost_too.as_ref());
+        (series, lost_too, decide.then_some(hold), broken)
+    };
+    let (series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
+    rest.warnings.extend(toppling::coarse(&base, &series));
+    let (bound, bracket) = second_opinion(case, &series.end);
+    let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
     let free_area = base.free_area();
-    let simulation = unstable.map_or(base.simulation, |(_, simulation)| simulation);
     let mut reduction = Reduction {
-        trials,
-        low,
-        high,
-        end,
+        trials: series.trials,
+        low: series.low,
+        high: series.high,
+        end: series.end,
+        corners,
+        before_nudges,
+        lost,
         rest: rest.effort,
         free_area,
         bound,
         bracket,
         warnings: rest.warnings,
-        simulation,
+        simulation: failed.unwrap_or(base.simulation),
     };
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);

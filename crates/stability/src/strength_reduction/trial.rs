@@ -6,11 +6,14 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
+use super::series::Outcome;
+use super::setting::Setting;
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
-use enmm::geometry::Vector;
+use enmm::geometry::{Point, Vector};
+use enmm::model::mechanism::{Mechanism, RigidMotion, mechanism};
 use enmm::model::tables::BlockId;
-use enmm::model::{Ledger, Simulation, StepError, StepReport};
+use enmm::model::{BoltCondition, BoltState, Ledger, Simulation, StepError, StepReport};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
 const WINDOWS_PER_FALL: f64 = 10.0;
@@ -28,6 +31,11 @@ const FLOW: f64 = 5.0;
 /// Share of the largest displacement and of the largest speed from which a block takes part in a failure.
 const TAKES_PART: f64 = 0.1;
 
+/// How many times its displacement at rest a slope has moved that has moved far.
+const FAR_AT_REST: f64 = 10.0;
+/// The same over the height of the model.
+const FAR: f64 = 0.01;
+
 /// Why a trial gave no verdict.
 pub enum Stop {
     /// The caller stopped it.
@@ -36,36 +44,39 @@ pub enum Stop {
     Failed(StepError),
 }
 
-/// The fall of the strength in a trial: from [`Fall::DEPTH`] times its end down to that, by equal ratios in equal
-/// times, so that joints take up their load one after the other and nothing is thrown (Eq. 60a).
-struct Fall {
-    /// When it begins (s).
-    start: f64,
-    /// How long it takes (s).
-    time: f64,
-    /// Strength factor at its end.
-    end: f64,
+/// What is done to a slope while its motion is followed.
+pub enum Course {
+    /// Its strength falls to that of a trial, from [`Course::DEPTH`] times that, by equal ratios in equal times, so that
+    /// joints take up their load one after the other and nothing is thrown (Eq. 60a).
+    Fall {
+        /// Strength factor at its end.
+        end: f64,
+    },
+    /// It is pushed by an acceleration (m/s²) for a time.
+    Push(Vector),
 }
 
-impl Fall {
-    /// Strength at its beginning over that at its end.
+impl Course {
+    /// Strength at the beginning of a fall over that at its end.
     const DEPTH: f64 = 10.0;
 
-    /// Strength factor at a time (s).
-    fn strength(&self, time: f64) -> f64 {
-        let left = 1.0 - ((time - self.start) / self.time).clamp(0.0, 1.0);
-        self.end * libm::pow(Self::DEPTH, left)
-    }
-
-    /// Gives the next step of a model its strength.
-    fn act(&self, simulation: &mut Simulation) {
-        let (time, dt) = (simulation.time(), simulation.model().dt);
-        if time >= self.start + self.time {
-            return;
-        }
+    /// Acts on the next step of a model, `since` (s) after the beginning and for a `time` (s).
+    fn act(&self, simulation: &mut Simulation, since: f64, time: f64) {
+        let (now, dt, gravity) = (simulation.time(), simulation.model().dt, simulation.model().gravity);
+        let is_over = since >= time;
         let drive = simulation.drive();
-        (drive.from.strength_factor, drive.to.strength_factor) = (self.strength(time), self.strength(time + dt));
-        (drive.since, drive.until) = (time, time + dt);
+        match *self {
+            Self::Fall { .. } if is_over => {}
+            Self::Fall { end } => {
+                let strength = |since: f64| end * libm::pow(Self::DEPTH, 1.0 - (since / time).clamp(0.0, 1.0));
+                (drive.from.strength_factor, drive.to.strength_factor) = (strength(since), strength(since + dt));
+                (drive.since, drive.until) = (now, now + dt);
+            }
+            Self::Push(push) => {
+                let gravity = if is_over { gravity } else { gravity + push };
+                (drive.from.gravity, drive.to.gravity) = (gravity, gravity);
+            }
+        }
     }
 }
 
@@ -73,11 +84,14 @@ impl Fall {
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,
-    scales: Scales,
+    /// Times, speeds and lengths of its motion.
+    pub scales: Scales,
     /// Whether each block can move.
     free: Vec<bool>,
     /// Whether rock yields: what it flows is no slip of joints.
     yields: bool,
+    /// Displacement (m) beyond which a slope that rests has moved far.
+    far: f64,
 }
 
 impl Base {
@@ -86,7 +100,9 @@ impl Base {
         let scales = scales(&simulation, tolerance);
         let free = free(&simulation);
         let yields = simulation.case().yields();
-        Self { simulation, scales, free, yields }
+        let (height, _) = height_and_gravity(&simulation);
+        let far = (FAR_AT_REST * given_way(&simulation)).min(FAR * height);
+        Self { simulation, scales, free, yields, far }
     }
 
     /// Area (m²) of all blocks without a support; where each has one, of all that can move.
@@ -99,6 +115,11 @@ impl Base {
         };
         let free = area(&|b| !held[b]);
         if free > 0.0 { free } else { area(&|_| true) }
+    }
+
+    /// Largest displacement (m) in which the slope has come to rest.
+    pub fn given_way(&self) -> f64 {
+        given_way(&self.simulation)
     }
 
     /// Blocks that can move.
@@ -134,48 +155,49 @@ impl Base {
         few
     }
 
-    /// Makes one trial; returns the model at its end as well. A slope that is caught is tried again in small
-    /// displacements: if it comes to rest there, too, no change of its geometry holds it.
-    pub fn run(&self, factor: f64, interrupt: Option<&AtomicBool>) -> Result<(Trial, Simulation), Stop> {
-        let (mut trial, simulation) = self.follow(factor, self.simulation.clone(), interrupt)?;
-        if trial.verdict != Verdict::Caught || self.yields {
-            return Ok((trial, simulation));
-        }
-        let mut small = self.simulation.clone();
-        small.assume_small_displacements();
-        let again = match self.follow(factor, small, interrupt) {
-            Ok((again, _)) => again,
-            Err(Stop::Failed(_)) => return Ok((trial, simulation)),
-            Err(stop) => return Err(stop),
-        };
-        (trial.steps, trial.wall) = (trial.steps + again.steps, trial.wall + again.wall);
-        if again.reason == judge::Reason::Rest {
-            (trial.verdict, trial.reason) = (Verdict::Stable, judge::Reason::Hardening);
-            trial.failing.clear();
-        }
-        Ok((trial, simulation))
+    /// Makes one trial in a setting; returns the model at its end as well.
+    pub fn run(&self, factor: f64, setting: &Setting, interrupt: Option<&AtomicBool>) -> Outcome {
+        let mut simulation = self.simulation.clone();
+        setting.act(&mut simulation);
+        simulation.drive().arrive();
+        let blank = Trial { factor, geometry: setting.geometry, ..Trial::default() };
+        self.follow(blank, simulation, &Course::Fall { end: 1.0 / factor }, self.scales.ramp, interrupt)
     }
 
-    /// Follows the motion of a model at rest while its strength falls.
+    /// Pushes a slope that has come to rest in a trial, for a time (s), and follows it until it rests again.
+    pub fn push(
+        &self,
+        (trial, mut simulation): (Trial, Simulation),
+        push: Vector,
+        time: f64,
+        interrupt: Option<&AtomicBool>,
+    ) -> Outcome {
+        simulation.drive().arrive();
+        self.follow(trial, simulation, &Course::Push(push), time, interrupt)
+    }
+
+    /// Follows the motion of a model while a course acts on it for a `time` (s), and judges it.
     fn follow(
         &self,
-        factor: f64,
+        before: Trial,
         mut simulation: Simulation,
+        course: &Course,
+        time: f64,
         interrupt: Option<&AtomicBool>,
-    ) -> Result<(Trial, Simulation), Stop> {
+    ) -> Outcome {
         let clock = Instant::now();
-        let fall = Fall { start: simulation.time(), time: self.scales.ramp, end: 1.0 / factor };
-        simulation.drive().arrive();
+        let scales = self.scales.of(time, before.geometry);
+        let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
         let mut positions = self.positions(&simulation);
-        let steps = simulation.steps_in(self.scales.window);
+        let steps = simulation.steps_in(scales.window);
         let mut first = None;
         let (mut judged, mut last) = (None, StepReport::default());
         while judged.is_none() {
-            match window(&mut simulation, steps, &fall, interrupt)? {
+            match window(&mut simulation, steps, |model| course.act(model, model.time() - start, time), interrupt)? {
                 Ok(report) => last = report,
                 Err(error) => {
-                    judged = Some(given_up(&samples, &self.scales).ok_or(Stop::Failed(error))?);
+                    judged = Some(given_up(&samples, &scales).ok_or(Stop::Failed(error))?);
                     break;
                 }
             }
@@ -184,16 +206,16 @@ impl Base {
             let few = self.few(&simulation);
             let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
             let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
-            samples.push(self.sample(&simulation, &last, &first, way, &few));
-            judged = judge::judge(&samples, &self.scales);
+            let sample = self.sample(&simulation, &last, &first, way, &few);
+            samples.push(Sample { time: simulation.time() - start, ..sample });
+            judged = judge::judge(&samples, &scales);
         }
         let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
         let end = samples.last().copied().unwrap_or_default();
         let trial = Trial {
-            factor,
             verdict,
             reason,
-            time: end.time,
+            time: before.time + end.time,
             displacement: end.displacement,
             slip: end.slip,
             speed: end.speed,
@@ -202,11 +224,45 @@ impl Base {
             acceleration: judge::acceleration(&samples),
             failing: self.failing(&simulation, verdict),
             loose: self.loose(&simulation),
-            steps: simulation.state().step - self.simulation.state().step,
+            is_far: end.displacement > self.far && !stretches(&simulation),
+            bars_yield: yields(&simulation),
+            steps: before.steps + simulation.state().step - begun,
             ledger_residual: last.ledger.residual_relative(),
-            wall: clock.elapsed().as_secs_f64(),
+            wall: before.wall + clock.elapsed().as_secs_f64(),
+            ..before
         };
         Ok((trial, simulation))
+    }
+
+    /// The way in which blocks have moved since the trial began; none where nothing fails.
+    pub fn mechanism(&self, simulation: &Simulation, failing: &[FailingBlock]) -> Option<Mechanism> {
+        let boundary = &simulation.model().boundary;
+        let mut bounds = vec![[f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY]; self.free.len()];
+        for (place, &block) in boundary.reference.iter().zip(&boundary.block) {
+            let [left, low, right, high] = &mut bounds[block.index()];
+            (*left, *low) = (left.min(place.x), low.min(place.y));
+            (*right, *high) = (right.max(place.x), high.max(place.y));
+        }
+        let bears = simulation.state().contacts.iter().filter(|contact| contact.normal_force > 0.0);
+        let mut is_borne = vec![false; self.free.len()];
+        for contact in bears {
+            let points = [boundary.nodes.point[contact.node], contact.edge];
+            points.iter().for_each(|&point| is_borne[boundary.block[point].index()] = true);
+        }
+        let motion = |block: &FailingBlock| {
+            let b = BlockId::new(block.block as usize);
+            let [left, low, right, high] = bounds[b.index()];
+            RigidMotion {
+                mass: block.mass,
+                centroid: block.position,
+                bounds: [Point::new(left, low), Point::new(right, high)],
+                motion: block.way,
+                turn: block.rotation,
+                is_borne: is_borne[b.index()],
+            }
+        };
+        let motions: Vec<RigidMotion> = failing.iter().map(motion).collect();
+        mechanism(&motions, simulation.acceleration())
     }
 
     /// The motion at the end of a window in which the fastest block has gone a way (m), without that of a few.
@@ -223,12 +279,12 @@ impl Base {
         let kinetic_of_few: f64 = few.iter().map(|&b| simulation.rigid_motion_of(b).3).sum();
         let energy = |l: &Ledger| l.potential + l.strain + l.stored - l.external_work;
         Sample {
-            time: simulation.time() - self.simulation.time(),
             displacement: far,
             slip: if self.yields { far } else { largest_slip(simulation, &self.simulation.state().contacts, few) },
             speed: way / self.scales.window,
             kinetic: (report.ledger.kinetic - kinetic_of_few).max(0.0),
             released: energy(first) - energy(&report.ledger),
+            ..Sample::default()
         }
     }
 
@@ -251,6 +307,7 @@ impl Base {
                     area: model.covers.block_area(b),
                     mass: model.mass_matrix.total[b],
                     displacement: self.moved(simulation, b),
+                    way: simulation.displacement_of(b) - self.simulation.displacement_of(b),
                     rotation: simulation.motion_of(b).rotation - self.simulation.motion_of(b).rotation,
                     speed: libm::hypot(velocity.norm(), spin * radius),
                 }
@@ -293,7 +350,7 @@ fn free(simulation: &Simulation) -> Vec<bool> {
 fn window(
     simulation: &mut Simulation,
     steps: u64,
-    fall: &Fall,
+    act: impl Fn(&mut Simulation),
     interrupt: Option<&AtomicBool>,
 ) -> Result<Result<StepReport, StepError>, Stop> {
     let mut report = StepReport::default();
@@ -301,7 +358,7 @@ fn window(
         if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Stop::Interrupted);
         }
-        fall.act(simulation);
+        act(simulation);
         match simulation.advance(step == steps) {
             Ok(made) => report = made,
             Err(error) => return Ok(Err(error)),
@@ -317,9 +374,25 @@ fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reas
     running.then_some((Verdict::Unstable, judge::Reason::Runaway))
 }
 
+/// Whether a bar has yielded or broken since the case began.
+fn yields(simulation: &Simulation) -> bool {
+    let yields = |bolt: &BoltState| matches!(bolt.condition(), BoltCondition::Yielded | BoltCondition::Broken);
+    simulation.state().bolts.iter().any(yields)
+}
+
+/// Whether bars are there and none has yielded: slip that stretches them is elastic.
+fn stretches(simulation: &Simulation) -> bool {
+    simulation.state().bolts.iter().any(|bolt| bolt.active) && !yields(simulation)
+}
+
+/// Largest displacement (m) in which a slope has come to rest.
+fn given_way(simulation: &Simulation) -> f64 {
+    simulation.state().displacement.iter().map(Vector::norm).fold(0.0, f64::max)
+}
+
 /// Times, speeds and lengths of a model's motion (Eqs. 61, 63).
 fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
-    let (model, state) = (simulation.model(), simulation.state());
+    let model = simulation.model();
     let (height, gravity) = height_and_gravity(simulation);
     let wave = height / model.rocks.iter().map(|r| r.shear_wave_speed()).fold(f64::INFINITY, f64::min);
     let fall = (height / gravity).sqrt();
@@ -327,7 +400,7 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
     let still_speed = STILL * tolerance * gravity * window;
     let free = (0..model.covers.block_count()).filter(|&b| !simulation.workspace().mass_matrix.fixed[b]);
     let mass: f64 = free.map(|b| model.mass_matrix.total[b]).sum();
-    let given_way = state.displacement.iter().map(Vector::norm).fold(0.0, f64::max);
+    let given_way = given_way(simulation);
     let flow = if simulation.case().yields() { FLOW } else { 1.0 };
     let elastic = (ELASTIC * height).max(flow * given_way);
     Scales {
@@ -338,5 +411,7 @@ fn scales(simulation: &Simulation, tolerance: f64) -> Scales {
         still_kinetic: 0.5 * mass * still_speed * still_speed,
         elastic,
         limit: model.failure_displacement.max(elastic),
+        catches: simulation.case().yields(),
+        runs: 1,
     }
 }

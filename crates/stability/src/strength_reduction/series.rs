@@ -1,0 +1,139 @@
+//! A series of trials in one setting, until the limit lies between two of them.
+
+use std::sync::atomic::AtomicBool;
+
+use super::bracket::Search;
+use super::setting::Setting;
+use super::trial::{Base, Stop};
+use super::{End, Progress, Trial, Verdict};
+use enmm::model::Simulation;
+
+/// Trials in one setting, and what they have found.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// The trials, ascending in F.
+    pub trials: Vec<Trial>,
+    /// Greatest F that was stable, below every other.
+    pub low: Option<f64>,
+    /// Least F that was not.
+    pub high: Option<f64>,
+    /// How it ended.
+    pub end: End,
+    /// The model at the end of the greatest stable trial.
+    pub stable: Option<Simulation>,
+    /// The model at the end of the least trial that was not stable.
+    pub unstable: Option<Simulation>,
+}
+
+impl Series {
+    /// The limit: the middle of the bracket, when it was found.
+    pub fn factor(&self) -> Option<f64> {
+        let (low, high) = (self.low?, self.high?);
+        (self.end == End::Found).then_some(0.5 * (low + high))
+    }
+
+    /// The greatest F that was tried, when the slope is stable at it.
+    pub fn at_least(&self) -> Option<f64> {
+        self.low.filter(|_| self.end == End::StableThroughout)
+    }
+
+    /// Takes over the least trial of another series that was not stable, where its own bracket ends at that.
+    pub fn take_top(&mut self, other: &Self) {
+        if self.trial(self.high).is_none() {
+            self.trials.extend(other.trial(self.high).cloned());
+            self.unstable = other.unstable.clone();
+        }
+    }
+
+    /// The trial at a factor.
+    pub fn trial(&self, factor: Option<f64>) -> Option<&Trial> {
+        self.trials.iter().find(|trial| Some(trial.factor) == factor)
+    }
+}
+
+/// Makes trials from a common start and says how far it has come.
+pub struct Trials<'a> {
+    /// The slope at rest.
+    pub base: &'a Base,
+    /// Set by another thread to end the search.
+    pub interrupt: Option<&'a AtomicBool>,
+    /// Hears of each trial.
+    pub hear: &'a mut (dyn FnMut(&Trial, Progress) + Send),
+    /// Trials so far.
+    pub made: usize,
+}
+
+/// A trial with the model at its end.
+pub type Outcome = Result<(Trial, Simulation), Stop>;
+
+impl Trials<'_> {
+    /// Goes on with a search in a setting until it is over.
+    pub fn series(&mut self, search: Search, setting: &Setting) -> Series {
+        let (base, interrupt) = (self.base, self.interrupt);
+        self.series_of(search, &|factor| base.run(factor, setting, interrupt))
+    }
+
+    /// The same with trials of another kind. They are made in pairs, which two threads can share.
+    pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64) -> Outcome + Sync)) -> Series {
+        let (mut trials, mut end) = (Vec::<Trial>::new(), None);
+        let (mut stable, mut unstable) = (None::<(f64, Simulation)>, None::<(f64, Simulation)>);
+        while let (None, Some((a, b))) = (&end, search.next()) {
+            let both = match b {
+                Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a), || run(b))).into_iter().collect(),
+                None => vec![run(a)],
+            };
+            for outcome in both {
+                match outcome {
+                    Ok((trial, simulation)) => {
+                        search.note(trial.factor, trial.verdict);
+                        self.tell(&trial, search.expected() - search.made());
+                        let factor = trial.factor;
+                        if trial.verdict == Verdict::Stable {
+                            keep(&mut stable, factor, simulation, |kept| factor > kept);
+                        } else {
+                            keep(&mut unstable, factor, simulation, |kept| factor < kept);
+                        }
+                        trials.push(trial);
+                    }
+                    Err(stop) => _ = end.get_or_insert(End::from(stop)),
+                }
+            }
+        }
+        trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        let [low, high] = search.bracket();
+        let stable = stable.filter(|(factor, _)| Some(*factor) == low).map(|(_, simulation)| simulation);
+        let unstable = unstable.map(|(_, simulation)| simulation);
+        Series { trials, low, high, end: end.unwrap_or_else(|| search.end()), stable, unstable }
+    }
+
+    /// Makes one trial.
+    pub fn one(&mut self, run: &dyn Fn() -> Outcome) -> Outcome {
+        let outcome = run();
+        if let Ok((trial, _)) = &outcome {
+            self.tell(trial, 0);
+        }
+        outcome
+    }
+
+    /// Says that a trial has ended, and how many will follow.
+    fn tell(&mut self, trial: &Trial, open: usize) {
+        self.made += 1;
+        (self.hear)(trial, Progress { trials: self.made, expected: self.made + open });
+    }
+}
+
+impl From<Stop> for End {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Interrupted => Self::Interrupted,
+            Stop::Failed(error) => Self::Failed(error),
+        }
+    }
+}
+
+/// Keeps a model if its factor is better than that of the one that is kept.
+fn keep(kept: &mut Option<(f64, Simulation)>, factor: f64, simulation: Simulation, better: impl Fn(f64) -> bool) {
+    if kept.as_ref().is_none_or(|(kept, _)| better(*kept)) {
+        *kept = Some((factor, simulation));
+    }
+}

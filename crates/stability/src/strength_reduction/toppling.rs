@@ -1,0 +1,116 @@
+//! Nudges of a slope that fails by turning: without dilation its rest depends on the path (theory, section 16).
+
+use enmm::geometry::Vector;
+use enmm::model::tables::BlockId;
+use enmm::model::{Mechanism, Simulation};
+
+use super::bracket::Search;
+use super::series::{Outcome, Series, Trials};
+use super::setting::Setting;
+use super::slip::height_and_gravity;
+use super::trial::Base;
+use super::{End, FailingBlock, Reason, Trial, Verdict};
+
+/// Acceleration of a nudge over that of gravity.
+const NUDGE: f64 = 0.01;
+/// Nudges of a trial.
+const NUDGES: usize = 3;
+/// First steps down where a nudge makes the slope fail: the most by which nudges lower a factor, and a part of it.
+const STEPS_DOWN: [f64; 2] = [1.04, 1.01];
+
+/// Elements over the width of a block that turns from which its factor hardly depends on the mesh.
+const ELEMENTS: f64 = 3.0;
+/// The same where rock yields.
+const ELEMENTS_YIELDING: f64 = 6.0;
+
+/// Nudges the greatest stable trial where the blocks that fail turn, and goes down where it fails. Returns the search
+/// with the bracket that nudges leave, and the factor before them.
+pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search: &Search) -> (Series, Option<f64>) {
+    let Some(before) = series.factor().filter(|_| turns(trials.base, &series)) else { return (series, None) };
+    let outward = outward(series.trial(series.high));
+    let (base, interrupt) = (trials.base, trials.interrupt);
+    let nudged = |outcome: Outcome| -> Outcome {
+        let (mut trial, mut simulation) = outcome?;
+        let (height, gravity) = height_and_gravity(&simulation);
+        let time = 2.0 * (height / gravity).sqrt();
+        let push = Vector::new(outward * NUDGE * gravity, 0.0);
+        for _ in 0..NUDGES {
+            if trial.verdict != Verdict::Stable {
+                break;
+            }
+            (trial, simulation) = base.push((trial, simulation), push, time, interrupt)?;
+            trial.reason = if trial.verdict == Verdict::Stable { Reason::Rest } else { Reason::Nudge };
+        }
+        Ok((trial, simulation))
+    };
+    let Some((top, resting)) = series.trial(series.low).cloned().zip(series.stable.take()) else {
+        return (series, None);
+    };
+    let low = top.factor;
+    let first = trials.one(&|| nudged(Ok((top.clone(), resting.clone()))));
+    match first {
+        Ok((trial, _)) if trial.verdict == Verdict::Stable => {
+            series.stable = Some(resting);
+            return (series, Some(before));
+        }
+        Ok((trial, simulation)) => replace(&mut series, vec![trial], Some(simulation)),
+        Err(stop) => {
+            series.end = End::from(stop);
+            return (series, None);
+        }
+    }
+    let mut down = search.again(STEPS_DOWN.map(|step| low / step));
+    down.note(low, Verdict::Unstable);
+    let found = trials.series_of(down, &|factor| nudged(base.run(factor, setting, interrupt)));
+    let Series { trials, low, high, end, stable, unstable } = found;
+    replace(&mut series, trials, unstable);
+    (Series { low, high, end, stable, ..series }, Some(before))
+}
+
+/// Whether blocks turn that fail.
+fn turns(base: &Base, series: &Series) -> bool {
+    series.trial(series.high).zip(series.unstable.as_ref()).is_some_and(|(trial, simulation)| {
+        let mechanism = base.mechanism(simulation, &trial.failing);
+        matches!(mechanism, Some(Mechanism::Topples | Mechanism::Rotates))
+    })
+}
+
+/// Width (m) of a block: that of a rectangle of the same area and perimeter.
+fn width(simulation: &Simulation, block: &FailingBlock) -> f64 {
+    let boundary = &simulation.model().boundary;
+    let thickness = boundary.block_thickness[BlockId::new(block.block as usize)];
+    let half = block.area / thickness;
+    0.5 * (half - (half * half - 4.0 * block.area).max(0.0).sqrt())
+}
+
+/// A warning where blocks turn that have too few elements over their width.
+pub fn coarse(base: &Base, series: &Series) -> Option<String> {
+    let simulation = &base.simulation;
+    let trial = series.trial(series.high).filter(|_| turns(base, series))?;
+    let wanted = if simulation.case().yields() { ELEMENTS_YIELDING } else { ELEMENTS };
+    let size = simulation.model().covers.mesh.size;
+    let moving = trial.failing.iter().filter(|block| block.displacement > 0.5 * trial.displacement);
+    let narrow = moving.map(|block| width(simulation, block)).fold(f64::INFINITY, f64::min);
+    (narrow < wanted * size).then(|| {
+        format!(
+            "blocks turn that are {:.1} elements wide ({narrow:.3} m, mesh {size:.3} m): their factor can be 5 % too high \
+             below {wanted} elements; set mesh.size to {:.3} m",
+            narrow / size,
+            narrow / wanted
+        )
+    })
+}
+
+/// Which way along x blocks move that fail: the sign of their mean displacement.
+fn outward(trial: Option<&Trial>) -> f64 {
+    let way = trial.map_or(0.0, |trial| trial.failing.iter().map(|block| block.mass * block.way.x).sum());
+    if way < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// Puts trials in the place of those at the same factors.
+fn replace(series: &mut Series, trials: Vec<Trial>, unstable: Option<Simulation>) {
+    series.trials.retain(|old| trials.iter().all(|new| new.factor != old.factor));
+    series.trials.extend(trials);
+    series.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    series.unstable = unstable.or_else(|| series.unstable.take());
+}
