@@ -73,7 +73,10 @@ fn rock_that_dilates_much_is_told() {
         ("cohesion = 1e5\nfriction_deg = 39\ndilation_deg = 14", Some("14° (φ 39.000°)")),
         ("cohesion = 1e5\nfriction_deg = 39\ndilation_deg = 39", Some("39° (associated)")),
         (&format!("hoek_brown = {{ {mass} }}"), None),
-        (&format!("hoek_brown = {{ {mass}, associated = true }}"), Some("its friction angle at each stress (associated)")),
+        (
+            &format!("hoek_brown = {{ {mass}, associated = true }}"),
+            Some("its friction angle at each stress (associated)"),
+        ),
         (&format!("dilation_deg = 40\nhoek_brown = {{ {mass} }}"), Some("40° (φ ")),
     ] {
         let start = by.map(|by| format!("rock.granite: dilates by {by}"));

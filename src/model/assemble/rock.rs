@@ -32,14 +32,12 @@ fn criterion(rock: &Rock) -> Criterion {
             let dilation = if mass.associated { f64::INFINITY } else { tangent(dilation) };
             Criterion::HoekBrown(HoekBrown::new(mass.envelope(), dilation, rock.tension))
         }
-        None => {
-            Criterion::MohrCoulomb(MohrCoulomb {
-                friction: tangent(rock.friction_deg.unwrap_or(0.0)),
-                cohesion: rock.cohesion.unwrap_or(0.0),
-                dilation: tangent(dilation),
-                tension: rock.tension,
-            })
-        }
+        None => Criterion::MohrCoulomb(MohrCoulomb {
+            friction: tangent(rock.friction_deg.unwrap_or(0.0)),
+            cohesion: rock.cohesion.unwrap_or(0.0),
+            dilation: tangent(dilation),
+            tension: rock.tension,
+        }),
     }
 }
 
