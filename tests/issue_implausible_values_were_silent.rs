@@ -59,6 +59,32 @@ fn each_slip_is_told_with_its_key_value_and_range() {
     }
 }
 
+/// Rock dilates by its friction angle only where a case says so, and is told from a third of that on.
+#[test]
+fn rock_that_dilates_much_is_told() {
+    let told = |strength: &str| {
+        let text = CASE.replace("poisson = 0.25", &format!("poisson = 0.25\n{strength}"));
+        warnings(&text).into_iter().find(|warning| warning.contains("dilates by"))
+    };
+    let mass = "sigma_ci = 50e6, mi = 10, gsi = 45";
+    for (strength, by) in [
+        ("cohesion = 1e5\nfriction_deg = 39", None),
+        ("cohesion = 1e5\nfriction_deg = 39\ndilation_deg = 13", None),
+        ("cohesion = 1e5\nfriction_deg = 39\ndilation_deg = 14", Some("14° (φ 39.000°)")),
+        ("cohesion = 1e5\nfriction_deg = 39\ndilation_deg = 39", Some("39° (associated)")),
+        (&format!("hoek_brown = {{ {mass} }}"), None),
+        (
+            &format!("hoek_brown = {{ {mass}, associated = true }}"),
+            Some("its friction angle at each stress (associated)"),
+        ),
+        (&format!("dilation_deg = 40\nhoek_brown = {{ {mass} }}"), Some("40° (φ ")),
+    ] {
+        let start = by.map(|by| format!("rock.granite: dilates by {by}"));
+        let (told, start) = (told(strength).unwrap_or_default(), start.unwrap_or_default());
+        assert!(told.starts_with(&start) && told.is_empty() == start.is_empty(), "{strength}: {told}");
+    }
+}
+
 #[test]
 fn ignored_traces_are_named_with_their_places() {
     let away: String = (20..27).map(|x| format!("[[joint]]\npoints = [[{x}, 1], [{x}, 2.5]]\n")).collect();

@@ -114,7 +114,8 @@ fn keeps_momentum(strength: &str) {
 fn the_strength_factor_reduces_rock() {
     let text = "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 4], [0, 4]]\n[mesh]\nsize = 0.5\n\
                 angle_deg = 0\n\
-         [rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.2\nfriction_deg = 30\ncohesion = 5e4\n[[fix]]\n\
+         [rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.2\nfriction_deg = 30\ncohesion = 5e4\n\
+         dilation_deg = 30\n[[fix]]\n\
          edge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0]\naxes = \"x\"\n[[stage]]\nname = \
          \"stand\"\n\
          kind = \"static\"\nduration = 5\n";
@@ -175,7 +176,7 @@ fn coarse_meshes_of_rock_that_yields_are_told() {
         );
         simulation(&text).built().warnings.clone()
     };
-    let (clay, sand) = ("cohesion = 1e4", "cohesion = 1e4\nfriction_deg = 20");
+    let (clay, sand) = ("cohesion = 1e4", "cohesion = 1e4\nfriction_deg = 20\ndilation_deg = 6");
     let told = warnings(2.0, 1e8, clay, -9.81);
     assert_eq!(told.len(), 1, "{told:?}");
     let parts = ["mesh of 2.000000 m", "5.0 elements", "(10.000000 m)", "about 4 %", "1.414214 m or less"];

@@ -10,6 +10,9 @@ use crate::mechanics::{
 
 use super::{Model, State};
 
+/// Height over the mesh size by which a sliver may hang on its host: that of a triangle.
+const HANGING: f64 = 0.866_025_403_784_438_6;
+
 /// Averages over patches that rock of whole blocks feels where it yields, and its yield surfaces. Empty where no rock
 /// yields.
 #[derive(Debug, Clone)]
@@ -94,6 +97,18 @@ impl Model {
         [xx, yy, xy, self.pre_stress_out.get(element.index()).copied().unwrap_or_default()]
     }
 
+    /// Plastic strain that brings a trial stress xx, yy, xy, zz (Pa) of an element back to the surface of its rock; none
+    /// where it is elastic (Eqs. 57, 59a).
+    #[inline]
+    pub fn flow(&self, surface: &YieldSurface, element: ElementId, trial: [f64; 4]) -> Option<PlasticStrain> {
+        let host = self.covers.host[element];
+        if host == element {
+            return surface.flow(trial);
+        }
+        let weight = self.rock_of(element).density * self.gravity.norm() * HANGING * self.covers.mesh.size;
+        surface.flow_of_hung(trial, (weight - surface.tension()).max(0.0))
+    }
+
     /// Strength, strain, plastic strain and its growth of an element at the displacements of a state, as the next step
     /// will find them unless an input changes; none when the element never yields.
     fn plastic_now(
@@ -107,7 +122,8 @@ impl Model {
         let surface = felt.surfaces[self.element_rock[element] as usize].as_ref()?;
         let deformation = self.deformation(element, &state.displacement);
         let at = Strained { deformation, mean: felt.mean[element.index() - felt.first][0] };
-        let growth = surface.growth(&at, &self.pre_stress_and_out(element), before).unwrap_or_default();
+        let trial = surface.trial(&at, Some(&self.pre_stress_and_out(element)), before);
+        let growth = self.flow(surface, element, trial).unwrap_or_default();
         Some((strength, at, [*before, growth]))
     }
 

@@ -114,6 +114,11 @@ impl Envelope {
         }
     }
 
+    /// Shear strength and its tangent without confining pressure.
+    pub fn unconfined(&self) -> Tangent {
+        self.tangent(self.place(0.0))
+    }
+
     /// Global strength of the rock mass (Pa), by which the stress range of slopes goes.
     pub fn global_strength(&self) -> f64 {
         let Self { sigma_ci, mb, s, a } = *self;

@@ -327,7 +327,7 @@ pub struct Rock {
     /// Generalized Hoek–Brown strength, in place of `friction_deg` and `cohesion`; needs plane strain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hoek_brown: Option<HoekBrown>,
-    /// Dilation angle (degrees); default: `friction_deg` (associated flow), or 0 with `hoek_brown`.
+    /// Dilation angle (degrees), at most `friction_deg` (associated flow); default: 0, at which it keeps its volume.
     #[serde(default)]
     pub dilation_deg: Option<f64>,
     /// Tensile strength (Pa); default: the apex of the Mohr–Coulomb surface, or s·σci/mb of Hoek–Brown.
@@ -384,8 +384,7 @@ impl Rock {
 
     /// Whether the rock swells when it yields.
     pub fn dilates(&self) -> bool {
-        let angle = self.dilation_deg.or(self.friction_deg).unwrap_or_default();
-        angle > 0.0 || self.hoek_brown.is_some_and(|mass| mass.associated)
+        self.dilation_deg.unwrap_or_default() > 0.0 || self.hoek_brown.is_some_and(|mass| mass.associated)
     }
 }
 

@@ -264,12 +264,9 @@ impl Planes {
 }
 
 impl YieldSurface {
-    /// Increment of plastic strain at a deformation with averages of its patches (Eq. 57); `None` where the rock is
-    /// elastic.
-    ///
-    /// `pre` is the stress xx, yy, xy, zz (Pa) before any displacement.
-    pub fn growth(&self, at: &Strained, pre: &[f64; 4], plastic: &PlasticStrain) -> Option<PlasticStrain> {
-        self.flow(self.trial(at, Some(pre), plastic))
+    /// Tensile strength (Pa) of all axes together, at which the surface ends.
+    pub fn tension(&self) -> f64 {
+        self.planes.tension
     }
 
     /// Stress xx, yy, xy, zz (Pa) in the axes that rotate with the element, before any growth of plastic strain.
@@ -343,6 +340,12 @@ impl YieldSurface {
             None => PLANES[..ORDERED].iter().map(|&p| self.planes.beyond(p, &sorted)).fold(f64::NEG_INFINITY, f64::max),
             Some(curve) => curve.beyond([sorted[0], sorted[2]]).max(self.planes.beyond(PLANES[3], &sorted)),
         }
+    }
+
+    /// As [`Self::flow`], of rock that withstands a pull (Pa) on all sides beyond its own strength (Eq. 59a).
+    pub fn flow_of_hung(&self, [xx, yy, xy, zz]: [f64; 4], pull: f64) -> Option<PlasticStrain> {
+        let zz = if self.plane_stress { zz } else { zz - pull };
+        self.flow([xx - pull, yy - pull, xy, zz])
     }
 
     /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; `None` inside (Eq. 57).

@@ -23,6 +23,7 @@ young = 1e8
 poisson = 0.25
 cohesion = 5e3
 friction_deg = 20
+dilation_deg = 20
 [joint_law.joint]
 friction_deg = 5
 [[joint]]

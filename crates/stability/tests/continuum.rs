@@ -91,7 +91,7 @@ fn the_first_slope_of_griffiths_and_lane_has_its_factor() {
 #[test]
 fn dilation_and_stiffness_change_nothing() {
     let own = of_text(&griffiths_and_lane("", ""), 300);
-    let other = griffiths_and_lane("dilation_deg = 0.0", "").replace("young = 1e8", "young = 5e9");
+    let other = griffiths_and_lane("dilation_deg = 20.0", "").replace("young = 1e8", "young = 5e9");
     assert_eq!(of_text(&other, 300), own);
 }
 

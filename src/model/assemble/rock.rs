@@ -26,20 +26,18 @@ pub(super) fn yielding(rock: &Rock) -> Option<YieldingRock> {
 
 fn criterion(rock: &Rock) -> Criterion {
     let tangent = |degrees: f64| libm::tan(degrees.to_radians());
+    let dilation = rock.dilation_deg.unwrap_or(0.0);
     match &rock.hoek_brown {
         Some(mass) => {
-            let dilation = if mass.associated { f64::INFINITY } else { tangent(rock.dilation_deg.unwrap_or(0.0)) };
+            let dilation = if mass.associated { f64::INFINITY } else { tangent(dilation) };
             Criterion::HoekBrown(HoekBrown::new(mass.envelope(), dilation, rock.tension))
         }
-        None => {
-            let friction = rock.friction_deg.unwrap_or(0.0);
-            Criterion::MohrCoulomb(MohrCoulomb {
-                friction: tangent(friction),
-                cohesion: rock.cohesion.unwrap_or(0.0),
-                dilation: tangent(rock.dilation_deg.unwrap_or(friction)),
-                tension: rock.tension,
-            })
-        }
+        None => Criterion::MohrCoulomb(MohrCoulomb {
+            friction: tangent(rock.friction_deg.unwrap_or(0.0)),
+            cohesion: rock.cohesion.unwrap_or(0.0),
+            dilation: tangent(dilation),
+            tension: rock.tension,
+        }),
     }
 }
 

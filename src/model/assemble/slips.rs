@@ -1,12 +1,15 @@
 //! Slips of the pen: values of joints, sets and water that can be computed with, but mostly have the wrong unit.
 
 use crate::model::case::key::Key;
-use crate::model::case::{Case, JointSet};
+use crate::model::case::{Case, JointSet, Rock};
 
 /// Least cohesion and tensile strength (Pa) that a joint with any has; what is less is mostly in kPa or MPa.
 const STRENGTH_MIN: f64 = 1e3;
 /// Least friction angle (degrees) of a joint with friction; what is less is mostly its tangent.
 const FRICTION_MIN_DEG: f64 = 2.0;
+/// Greatest dilation angle over the friction angle of rock: E. Hoek and E. T. Brown (1997) give a quarter for very good
+/// rock masses, an eighth for average ones and none for poor ones.
+const DILATION_SHARE: f64 = 1.0 / 3.0;
 /// Least spacing of joints over the mesh size.
 const SPACING_RATIO: f64 = 0.1;
 
@@ -14,6 +17,7 @@ const SPACING_RATIO: f64 = 0.1;
 pub(super) fn of_values(case: &Case, low: f64, high: f64) -> Vec<String> {
     let mut warnings = strengths(case);
     warnings.extend(frictions(case));
+    warnings.extend(dilations(case));
     warnings.extend(spacings(case));
     warnings.extend(water(case, low, high));
     warnings
@@ -56,6 +60,29 @@ fn frictions(case: &Case) -> Vec<String> {
             )
         })
         .collect()
+}
+
+fn dilations(case: &Case) -> Vec<String> {
+    let much = case.rocks.iter().filter_map(|(name, rock)| Some((name, much_dilation(rock)?)));
+    much.map(|(name, by)| {
+        format!(
+            "rock.{name}: dilates by {by}; rock masses dilate by a quarter of their friction angle or less, and with \
+             more a slope fails at a factor that is some per cent too high: leave `dilation_deg` out for 0"
+        )
+    })
+    .collect()
+}
+
+/// By what angle a rock dilates that dilates by more than [`DILATION_SHARE`].
+fn much_dilation(rock: &Rock) -> Option<String> {
+    let friction = match &rock.hoek_brown {
+        Some(mass) if mass.associated => return Some("its friction angle at each stress (associated)".to_owned()),
+        Some(mass) => libm::atan(mass.envelope().unconfined().friction).to_degrees(),
+        None => rock.friction_deg.unwrap_or_default(),
+    };
+    let dilation = rock.dilation_deg.filter(|dilation| *dilation > DILATION_SHARE * friction)?;
+    let how = if dilation < friction { format!("φ {friction:.3}°") } else { "associated".to_owned() };
+    Some(format!("{dilation}° ({how})"))
 }
 
 fn spacings(case: &Case) -> Vec<String> {

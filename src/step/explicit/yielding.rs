@@ -230,7 +230,7 @@ impl LaneWork for Flowing<'_> {
         for (lane, e) in ElementId::range(elements).enumerate() {
             if inside & 1 << lane == 0 && !self.pass.removed[model.covers.element_block[e]] {
                 let [trial @ .., mean, brought] = out.map(|values| values[lane]);
-                if let Some(growth) = surface.flow(trial) {
+                if let Some(growth) = model.flow(surface, e, trial) {
                     self.grow(surface, e, [mean, brought], &growth);
                 }
             }

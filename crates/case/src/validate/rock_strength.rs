@@ -32,7 +32,7 @@ fn mohr_coulomb(key: &Key, rock: &Rock) -> Check {
     if rock.yields() && friction == 0.0 && cohesion == 0.0 {
         return fail(key, format!("has friction_deg 0 and cohesion 0, one must be greater than 0; {FREE}"));
     }
-    let hint = "more than friction_deg would make energy; leave it out for friction_deg";
+    let hint = "more than friction_deg would make energy; leave it out for 0, which is usual";
     optional(key, "dilation_deg", rock.dilation_deg, Range::from(0.0).to(friction), "degrees", hint)?;
     let apex = if friction > 0.0 { cohesion / libm::tan(friction.to_radians()) } else { Law::STRENGTH_MAX };
     let hint = "the shear planes end at cohesion/tan(friction_deg); leave it out for that";

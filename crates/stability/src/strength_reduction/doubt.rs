@@ -3,11 +3,12 @@
 use super::corners::{CarryingCorner, CornersHold};
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
 use crate::limit_analysis::Bound;
-use enmm::model::case::Case;
+use enmm::model::case::{Case, Rock};
 
 /// Part of the largest term of the ledger that may stay unexplained.
 const RESIDUAL: f64 = 1e-3;
-/// A stable F over the bound of limit analysis from which something other than strength must hold the slope.
+/// A stable F over the bound of limit analysis from which something other than strength must hold the slope, and what
+/// flow leaves of a bound over an F that was not stable from which something other than strength must fail.
 const ABOVE: f64 = 1.02;
 /// Blocks that a warning names.
 const NAMED: usize = 3;
@@ -20,9 +21,16 @@ impl Reduction {
         moving > few
     }
 
-    /// Why the factor is in doubt: it is above the bound of limit analysis. The text is among the warnings, too.
+    /// Why the factor is in doubt: it is above the bound of limit analysis, or far below it. The text is among the
+    /// warnings, too.
     pub fn doubt(&self) -> Option<String> {
-        self.locked().or_else(|| self.held())
+        self.locked().or_else(|| self.held()).or_else(|| self.lost())
+    }
+
+    /// The factor of rock that yields is farther below its lower bound than flow without dilation explains.
+    fn lost(&self) -> Option<String> {
+        let (bracket, failed) = (self.bracket.as_ref()?, self.high?);
+        far_below(failed, bracket.lower.value(), least_kept(self.simulation.case(), failed))
     }
 
     /// The factor of rock that yields is above its upper bound.
@@ -52,6 +60,42 @@ impl Reduction {
             )
         })
     }
+}
+
+/// Share of the strength divided by a factor that flow at a dilation angle leaves (degrees; E. H. Davis 1968; Eq. 65a).
+fn kept(friction_deg: f64, dilation_deg: f64, factor: f64) -> f64 {
+    let friction = libm::atan(libm::tan(friction_deg.to_radians()) / factor);
+    let dilation = dilation_deg.to_radians().min(friction);
+    let [(sin, cos), (sin_of, cos_of)] = [friction, dilation].map(libm::sincos);
+    cos * cos_of / (1.0 - sin * sin_of)
+}
+
+/// The least of these shares of the rocks that yield and of the joints.
+fn least_kept(case: &Case, factor: f64) -> f64 {
+    let of_rock = |rock: &Rock| {
+        let dilation = rock.dilation_deg.unwrap_or_default();
+        match &rock.hoek_brown {
+            Some(mass) if mass.associated => 1.0,
+            Some(mass) => kept(libm::atan(mass.envelope().unconfined().friction).to_degrees(), dilation, factor),
+            None => kept(rock.friction_deg.unwrap_or_default(), dilation, factor),
+        }
+    };
+    let rocks = case.rocks.values().filter(|rock| rock.yields()).map(of_rock);
+    let joints = case.joint_laws.values().map(|law| kept(law.friction_deg, law.dilation_deg, factor));
+    rocks.chain(joints).fold(1.0, f64::min)
+}
+
+/// What to say of an F that was not stable, with the lower bound and the share of the strength that flow leaves.
+fn far_below(failed: f64, lower: f64, kept: f64) -> Option<String> {
+    (ABOVE * failed < kept * lower).then(|| {
+        format!(
+            "F = {failed:.4} was not stable, {:.1} % below the lower bound of limit analysis ({lower:.4}); flow that \
+             dilates by less than its friction explains {:.1} % (E. H. Davis 1968): unless columns topple, a part of \
+             the model fails that strength would hold; look at the blocks that fail, and try another `mesh.size`",
+            100.0 * (1.0 - failed / lower),
+            100.0 * (1.0 - kept)
+        )
+    })
 }
 
 /// Reasons not to take the result as it is.
@@ -150,4 +194,34 @@ fn slid(trials: &[Trial], counts: impl Fn(&&Trial) -> bool, fate: &str) -> Optio
     Some(format!(
         "at {range} joints slipped or rock flowed by up to {far:.3} m, farther than elasticity explains, and {fate}"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Associated flow leaves all strength; without dilation cos φ of it is left, at the friction that a factor leaves.
+    #[test]
+    fn flow_that_does_not_dilate_leaves_a_share_of_the_strength() {
+        for (phi, psi, factor, expected) in [
+            (40.0, 40.0, 1.0, 1.0),
+            (40.0, 0.0, 1.0, 0.766_044_443),
+            (45.0, 0.0, 0.5, 0.447_213_595),
+            (30.0, 30.0, 3.0, 1.0),
+            (30.0, 10.0, 1.0, 0.933_958_640),
+            (0.0, 0.0, 1.0, 1.0),
+        ] {
+            let found = kept(phi, psi, factor);
+            assert!((found - expected).abs() < 1e-8, "{phi} {psi} {factor}: {found}");
+        }
+    }
+
+    /// A plane slide with 0.62 for 1.396 is in doubt, a slope of soil 5 % below its bound is not.
+    #[test]
+    fn a_factor_far_below_its_bound_is_in_doubt() {
+        let doubt = far_below(0.6265, 1.396, kept(43.0, 0.0, 0.6265)).unwrap_or_default();
+        assert!(doubt.contains("55.1 % below") && doubt.contains("explains 44.2 %"), "{doubt}");
+        assert_eq!(far_below(1.31, 1.38, kept(20.0, 0.0, 1.31)), None);
+        assert!(far_below(1.31, 1.38, 1.0).is_some());
+    }
 }

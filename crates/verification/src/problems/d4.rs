@@ -103,12 +103,12 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
     let rise = width / b_deg.to_radians().tan();
     let height = (rise + width).max(2.0 * width);
     let (low, high) = (0.5 * (height - rise), 0.5 * (height + rise));
-    let [w, h] = [width, height];
+    let ([w, h], phi) = ([width, height], setup.get("phi_deg"));
     format!(
         "title = \"Sample with a joint at {b_deg}° from its axis\"\n[domain]\noutline = {}\n[mesh]\nsize = {:e}\n\
          angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = \
          {:e}\n\
-         poisson = 0.25\ncohesion = {:e}\nfriction_deg = {:?}\n[joint_law.joint]\ncohesion = {:e}\n\
+         poisson = 0.25\ncohesion = {:e}\nfriction_deg = {phi:?}\ndilation_deg = {phi:?}\n[joint_law.joint]\ncohesion = {:e}\n\
          friction_deg = {:?}\n[solver]\ncontact_stiffness = {:?}\n\
          [[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
          [[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\naxes = \"y\"\n\
@@ -119,7 +119,6 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
         list(&[[-0.1 * w, low - 0.1 * rise], [1.1 * w, high + 0.1 * rise]]),
         setup.get("stiffness") * strength.cap(),
         strength.rock[0],
-        setup.get("phi_deg"),
         strength.joint[0],
         setup.get("joint_phi_deg"),
         JOINT_STIFFNESS * (setup.get("mesh") * w).recip().max(1.0),
