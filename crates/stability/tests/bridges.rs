@@ -193,3 +193,35 @@ fn long_quasi_brittle_rock_bears_more_in_bending_on_any_mesh() {
         }
     }
 }
+
+/// Two joints that miss each other in rock that yields, on some mesh: the lower one ends 1.414 m before the end of the
+/// upper one, which ends 1.383 m before the lower one.
+fn step(size: f64, more: &str, rock: &str) -> Case {
+    case(&format!(
+        "title = \"step\"\n[domain]\noutline = [[0, 0], [60, 0], [60, 40], [30, 40], [10, 10], [0, 10]]\n\
+         joint_law = \"joint\"\n[mesh]\nsize = {size}\n[[joint]]\npoints = [[10, 10], [30, 23]]\n[[joint]]\n\
+         points = [[29, 24], [40, 40]]\n{more}\n[rock.rock]\ndensity = 2650\nyoung = 20e9\npoisson = 0.3\n{rock}\n\
+         [joint_law.joint]\nfriction_deg = 40\n[joint_law.bridge]\nfriction_deg = 35\ncohesion = 10e6\n\
+         residual_cohesion = 0\ntension = 200e3\n[[fix]]\nedge = [[0, 0], [60, 0]]\n[[stage]]\nname = \"rest\"\n\
+         kind = \"static\"\nduration = 0.01\n"
+    ))
+}
+
+/// Fewer than two elements of rock that yields between the end of a joint and another line hold too much: the search
+/// refuses them and names both remedies, which both work. It gets as far as the stage that is too short for a rest.
+#[test]
+fn rock_that_yields_and_is_too_short_for_the_mesh_is_refused() {
+    let yields = "cohesion = 10e6\nfriction_deg = 35\ntension = 200e3";
+    let bridges = "[[bridge]]\npoints = [[30, 23], [29, 24]]\nlaw = \"bridge\"";
+    let error = |case: &Case| {
+        let options = ReductionOptions::default();
+        factor_of_safety(case, &options, &mut |_, _| ()).expect_err("no reduction").to_string()
+    };
+    let refused = error(&step(3.0, "", yields));
+    for words in ["mesh.size", "1.414 m", "[30.000000, 23.000000]", "[[bridge]]", "0.69"] {
+        assert!(refused.contains(words), "{words}: {refused}");
+    }
+    for case in [step(3.0, bridges, yields), step(0.69, "", yields), step(3.0, "", "")] {
+        assert!(error(&case).contains("does not come to rest"), "{}", error(&case));
+    }
+}

@@ -7,6 +7,7 @@ mod geometry;
 mod integrators;
 mod joints;
 mod locator;
+mod locked;
 mod memory;
 mod ports;
 mod quiet;
@@ -33,6 +34,7 @@ use locator::Locator;
 
 pub use ends::TraceEnd;
 pub use integrators::{ExplicitAlone, Integrators};
+pub use locked::locked_ends;
 pub use sections::{Breaking, Bridge};
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
