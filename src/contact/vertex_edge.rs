@@ -4,7 +4,9 @@
 use crate::cover::{self, BlockId, CoverId, Weights};
 use crate::geometry::Vector;
 
-use super::{Bond, Boundary, Closure, EdgeId, Frames, JointLaw, LawId, LiftLoad, Limits, NodeId, Pair, SideId};
+use super::{
+    Boundary, Closure, EdgeId, Frames, Hold, JointLaw, LawId, LiftLoad, Limits, NodeId, Pair, SectionId, SideId,
+};
 
 /// State of a contact at the end of a step.
 #[doc(alias = "sliding")]
@@ -105,6 +107,15 @@ pub struct BondHistory {
     pub lengths: [f64; 2],
     /// Its law: that of the bonded part, where the faces of a contact lie on joints of two laws.
     pub law: LawId,
+    /// The section with which it breaks; none where it breaks by itself.
+    pub section: Option<SectionId>,
+}
+
+impl BondHistory {
+    /// What a contact keeps of it as its past.
+    pub(crate) fn past(&self) -> f64 {
+        self.section.map_or(self.damage, |section| -1.0 - f64::from(section.number()))
+    }
 }
 
 /// A contact during one step: geometry, springs and forces. What it shares with others, the boundary that it lies on
@@ -133,7 +144,8 @@ pub struct VertexEdge {
     /// Part of it on which cohesion and tension act (m).
     pub bonded: f64,
     /// The past that its law knows: of a rough joint the mean normal stress (Pa) that friction feels on its faces, 0 in
-    /// their first step; of one that softens the damage of its bond.
+    /// their first step; of one that softens the damage of its bond; less than zero on a section, whose number it is,
+    /// counted from -1 down.
     pub past: f64,
     /// Law of the joint.
     pub law: LawId,
@@ -172,6 +184,8 @@ pub struct ContactSetting<'a> {
     pub trace_law: &'a [LawId],
     /// Factor on the strength of all joints.
     pub strength: f64,
+    /// Shares of tension and of shear beyond the residual one that the bonds of each section may carry.
+    pub section_share: &'a [[f64; 2]],
     /// Share of the normal force of this step in that which delayed friction feels.
     pub felt_share: f64,
     /// Least length (m) over which rock crushes.
@@ -209,6 +223,9 @@ impl VertexEdge {
     pub fn limits(&self, setting: &ContactSetting) -> Limits {
         let law = &setting.laws[self.law];
         let is_bond = law.softening.is_some() && self.history.intact;
+        if is_bond && self.section().is_some() {
+            return Limits::UNLIMITED;
+        }
         let limits = if is_bond {
             self.law_of_bond(setting).limits(self.bonded, true)
         } else {
@@ -221,13 +238,23 @@ impl VertexEdge {
 
     /// Its bond, if its joint softens and holds.
     #[inline(always)]
-    pub fn bond(&self, setting: &ContactSetting) -> Option<Bond> {
+    pub fn bond(&self, setting: &ContactSetting) -> Option<Hold> {
         let law = &setting.laws[self.law];
         if law.softening.is_none() || !self.history.intact {
             return None;
         }
-        let law = self.law_of_bond(setting);
-        law.bond(self.stiffness, self.bonded, setting.strength, [self.past, self.history.slip])
+        let (law, length, strength) = (self.law_of_bond(setting), self.bonded, setting.strength);
+        if let Some(section) = self.section() {
+            let share = setting.section_share[section];
+            return Some(Hold::InSection(section, law.section_bond(self.stiffness, length, strength, share)));
+        }
+        law.bond(self.stiffness, length, strength, [self.past, self.history.slip]).map(Hold::Alone)
+    }
+
+    /// The section with which its bond breaks, if it has one.
+    #[inline(always)]
+    pub fn section(&self) -> Option<SectionId> {
+        (self.past < 0.0).then(|| SectionId::new((-1.0 - self.past) as usize))
     }
 
     /// The law of a bond. Where part of the contact lies on another joint, the friction is that of both by length.
@@ -360,7 +387,7 @@ impl VertexEdge {
         let limit = match self.bond(setting) {
             Some(bond) => {
                 let ease = 1.0 / self.stiffness[1];
-                bond.shear(self.history.normal_force, trial.abs(), ease, bond.damage_at(opening))
+                bond.shear(self.history.normal_force, trial.abs(), ease, opening)
             }
             None => self.shear_limit_after(normal, setting),
         };

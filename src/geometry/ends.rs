@@ -295,8 +295,7 @@ impl Stretch {
 
     /// The point of it nearest to another.
     fn foot(&self, p: Point) -> Point {
-        let [a, b] = self.ends;
-        a + (b - a) * ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0)
+        segment::foot(p, self.ends[0], self.ends[1])
     }
 
     /// Whether it ends where the end lies and runs back along its trace.

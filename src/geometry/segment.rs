@@ -9,6 +9,11 @@ pub fn distance(p: Point, a: Point, b: Point) -> f64 {
     (p - a - d * along).norm()
 }
 
+/// Returns the point of the segment between `a` and `b`, which are apart, that is nearest to another.
+pub fn foot(p: Point, a: Point, b: Point) -> Point {
+    a + (b - a) * ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

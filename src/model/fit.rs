@@ -4,7 +4,7 @@
 use std::fmt::Display;
 
 use crate::contact::{
-    BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, Meeting, NeighbourList, Unloaded,
+    BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, Meeting, NeighbourList, Release, Unloaded,
 };
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
@@ -136,6 +136,7 @@ impl Simulation {
             columns: _,
             contacts,
             bonds,
+            sections,
             found,
             friction_delay,
             neighbours,
@@ -156,7 +157,8 @@ impl Simulation {
         self.check_contacts(contacts)?;
         let is_soft = laws.iter().any(|law| law.softening.is_some());
         length("bonds", bonds.len(), if is_soft { contacts.len() } else { 0 })?;
-        check_bonds(bonds, laws.len())?;
+        length("sections", sections.len(), self.model().sections.list.len())?;
+        check_bonds(bonds, laws.len(), sections)?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
@@ -385,10 +387,17 @@ impl Simulation {
     }
 }
 
-fn check_bonds(bonds: &[BondHistory], laws: usize) -> Fit {
-    for (k, &BondHistory { damage, lengths, law }) in bonds.iter().enumerate() {
+fn check_bonds(bonds: &[BondHistory], laws: usize, sections: &[Option<Release>]) -> Fit {
+    for (k, &Release { carried, left }) in sections.iter().enumerate().filter_map(|(k, s)| Some((k, s.as_ref()?))) {
+        between(format_args!("sections[{k}].left"), left, 0.0, 1.0)?;
+        carried.iter().try_for_each(|&s| between(format_args!("sections[{k}].carried"), s, 0.0, FORCE))?;
+    }
+    for (k, &BondHistory { damage, lengths, law, section }) in bonds.iter().enumerate() {
         between(format_args!("bonds[{k}].damage"), damage, 0.0, 1.0)?;
         index(format_args!("bonds[{k}].law"), law.number(), laws)?;
+        if let Some(section) = section {
+            index(format_args!("bonds[{k}].section"), section.number(), sections.len())?;
+        }
         lengths.iter().try_for_each(|&length| between(format_args!("bonds[{k}].lengths"), length, 0.0, LENGTH))?;
     }
     Ok(())

@@ -69,6 +69,7 @@ impl State {
             stage_force,
             contacts,
             bonds,
+            sections,
             found,
             neighbours,
             plastic,
@@ -99,7 +100,7 @@ impl State {
         let of_columns = columns.iter().map(|column| sum(&[&column.displacement, &column.velocity])).sum::<usize>();
         vec![
             ("motion", sum(&[displacement, velocity, acceleration, stage_displacement, stage_force]) + of_columns),
-            ("contacts", contacts.bytes() + bonds.bytes() + found.bytes()),
+            ("contacts", contacts.bytes() + bonds.bytes() + sections.bytes() + found.bytes()),
             ("near pairs", neighbours.bytes()),
             ("plastic strain", plastic.bytes()),
             ("supports and bolts", sum(&[support_force, support_rest, fix_active, bolts])),

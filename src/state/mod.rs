@@ -29,7 +29,7 @@ pub use workspace::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{BoltState, BondHistory, ContactHistory, FoundContacts, JointLaw, LawId, NeighbourList};
+use crate::contact::{BoltState, BondHistory, ContactHistory, FoundContacts, JointLaw, LawId, NeighbourList, Release};
 use crate::geometry::Vector;
 use crate::mechanics::{ColumnState, PlasticStrain};
 
@@ -80,6 +80,8 @@ pub struct State {
     pub contacts: Vec<ContactHistory>,
     /// Bond of each of them; empty in a model whose joints do not soften.
     pub bonds: Vec<BondHistory>,
+    /// How each section of a rock bridge lets go; none while it holds.
+    pub sections: Vec<Option<Release>>,
     /// The same as they were found; empty in a model whose joints soften, and in implicit runs.
     pub found: FoundContacts,
     /// How friction is delayed in a dynamic stage; none before its first step, and in static stages.
@@ -146,11 +148,12 @@ impl State {
             dt_last,
             displacement,
             velocity,
-            contacts,
-            bonds,
-            found,
+            contacts: _,
+            bonds: _,
+            sections: _,
+            found: _,
             friction_delay,
-            neighbours,
+            neighbours: _,
             support_force,
             support_rest,
             fix_active,
@@ -175,9 +178,7 @@ impl State {
         self.stage_starts.clone_from(stage_starts);
         self.displacement.clone_from(displacement);
         self.velocity.clone_from(velocity);
-        self.contacts.clone_from(contacts);
-        self.bonds.clone_from(bonds);
-        self.found.copy_from(found);
+        self.copy_contacts(other);
         self.support_force.clone_from(support_force);
         self.support_rest.clone_from(support_rest);
         self.fix_active.clone_from(fix_active);
@@ -190,9 +191,17 @@ impl State {
         self.plastic.clone_from(plastic);
         self.columns.clone_from(columns);
         self.acceleration.clone_from(acceleration);
-        self.neighbours.copy_from(neighbours);
         self.drive.copy_from(drive);
         self.events.copy_from(events);
+    }
+
+    /// Copies contacts, and the search that finds them.
+    fn copy_contacts(&mut self, other: &Self) {
+        self.contacts.clone_from(&other.contacts);
+        self.bonds.clone_from(&other.bonds);
+        self.sections.clone_from(&other.sections);
+        self.found.copy_from(&other.found);
+        self.neighbours.copy_from(&other.neighbours);
     }
 }
 

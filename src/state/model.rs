@@ -1,6 +1,8 @@
 //! The built model: nothing in it changes in time.
 
-use crate::contact::{BoltSegment, Boundary, ContactSetting, EdgeId, EntranceRule, Frames, JointLaw, LawId, Support};
+use crate::contact::{
+    BoltSegment, Boundary, ContactSetting, EdgeId, EntranceRule, Frames, JointLaw, LawId, Sections, Support,
+};
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
@@ -177,6 +179,8 @@ pub struct Model {
     pub trace_law: Vec<LawId>,
     /// Law of contacts between faces that were no joints.
     pub default_law: LawId,
+    /// Sections of rock bridges that break as a whole.
+    pub sections: Sections,
     /// Fixities.
     pub fixities: Vec<Fixity>,
     /// Supports of all fixities.
@@ -238,9 +242,9 @@ impl Model {
         frames: &'a Frames,
         selection: &'a SelectionBuffers,
     ) -> ContactSetting<'a> {
-        let SelectionBuffers { ref trace_law, strength, felt_share, .. } = *selection;
-        let crush_length = self.entrance.crush_floor * self.covers.mesh.size;
-        ContactSetting { boundary: &self.boundary, frames, laws, trace_law, strength, felt_share, crush_length }
+        let SelectionBuffers { ref trace_law, ref section_share, strength, felt_share, .. } = *selection;
+        let (boundary, crush_length) = (&self.boundary, self.entrance.crush_floor * self.covers.mesh.size);
+        ContactSetting { boundary, frames, laws, trace_law, section_share, strength, felt_share, crush_length }
     }
 
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not

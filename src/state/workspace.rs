@@ -2,7 +2,7 @@
 
 use crate::contact::{
     AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
-    PenetratingContacts, SearchGrid, SideId, SupportRow, VertexEdge,
+    PenetratingContacts, SearchGrid, SectionForces, SideId, SupportRow, VertexEdge,
 };
 use crate::cover::{BlockId, ElementId};
 use crate::geometry::Vector;
@@ -37,6 +37,8 @@ pub struct Workspace {
     pub sweep: SweepBuffers,
     /// Outcomes of the contacts in this step, by run.
     pub outcomes: Vec<ContactOutcome>,
+    /// Forces of the sections of rock bridges in this step.
+    pub sections: Vec<SectionForces>,
     /// Pairs of blocks that may overlap.
     pub suspects: Vec<Suspect>,
     /// Buffers of an integrator other than the explicit one.
@@ -131,6 +133,8 @@ pub struct SelectionBuffers {
     pub trace_law: Vec<LawId>,
     /// Factor on the strength of all joints in this step.
     pub strength: f64,
+    /// Shares of tension and of shear beyond the residual one that bonds of each section may carry in this step.
+    pub section_share: Vec<[f64; 2]>,
     /// Share of the normal force of this step in that which delayed friction feels.
     pub felt_share: f64,
     /// Faces in touch in this step.

@@ -1,6 +1,8 @@
 //! Who touches whom: positions of the boundary, near pairs, and the contacts of a sub-step of either integrator.
 
-use crate::contact::{self, EdgeId, Frames, NarrowPhase, NearPair, OpenClose, SearchView, VertexEdge, VertexRule};
+use crate::contact::{
+    self, BondHistory, EdgeId, Frames, NarrowPhase, NearPair, OpenClose, Release, SearchView, VertexEdge, VertexRule,
+};
 use crate::geometry::{Point, Vector};
 use crate::state::{Model, SelectionBuffers, State};
 
@@ -71,6 +73,8 @@ pub fn entrance(
     contacts: &mut Vec<VertexEdge>,
 ) {
     selection.strength = state.drive.strength_factor(state.drive.share(step.time));
+    selection.section_share.clear();
+    selection.section_share.extend(state.sections.iter().map(Release::shares));
     if has_kept(selection) {
         return keep(model, state, selection, contacts);
     }
@@ -105,6 +109,7 @@ pub fn entrance(
         first: state.step == 0,
         softens: has_bonds(&state.laws),
         bonds: &state.bonds,
+        sections: &model.sections,
         in_situ: model.in_situ.as_ref(),
         serial: step.serial,
     };
@@ -125,7 +130,7 @@ fn keep(model: &Model, state: &State, selection: &SelectionBuffers, contacts: &m
     let gaps = selection.kept_gaps.iter().flatten();
     for (k, (contact, gap)) in contacts.iter_mut().zip(gaps).enumerate() {
         let history = state.contacts[k];
-        let past = state.bonds.get(k).map_or(0.0, |bond| bond.damage);
+        let past = state.bonds.get(k).map_or(0.0, BondHistory::past);
         let gap = gap + opened(model, state, contact) - history.unloaded.gap();
         *contact = VertexEdge { history, gap, past, torn: false, fresh: false, delayed: false, ..*contact };
     }

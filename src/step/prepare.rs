@@ -11,7 +11,7 @@ use super::{Regime, applied, integrator_of, quiet};
 /// and a restored state.
 pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     let covers = model.covers.cover_count();
-    let Workspace { motion, selection, sweep, sums, .. } = &mut *workspace;
+    let Workspace { motion, selection, sweep, sums, sections, .. } = &mut *workspace;
     for field in [&mut motion.predicted, &mut sweep.increment] {
         field.clear();
         field.resize(covers, Vector::zeros());
@@ -24,6 +24,8 @@ pub fn prepare(model: &Model, state: &State, workspace: &mut Workspace) {
     motion.columns.extend(state.columns.iter().map(|column| column.velocity.clone()));
     selection.trace_law.clear();
     selection.trace_law.extend(model.trace_law.iter().map(|&law| state.law_switch[law]));
+    selection.section_share.reserve(model.sections.list.len());
+    sections.reserve(model.sections.list.len());
     selection.near_sides.forget();
     selection.kept_gaps = None;
     selection.left_out.clear();

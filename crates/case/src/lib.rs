@@ -460,6 +460,24 @@ pub struct JointLaw {
     /// peak values to the residual ones with the slip until this much is spent; default: they fall at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_energy: Option<f64>,
+    /// How rock bridges of this law break: `by section`, as a whole under the tension, shear and bending of their
+    /// section, or `by node`, contact by contact; default: by section where the rock is brittle, or its characteristic
+    /// length E'·`tension_energy`/`tension`² at most four times the bridge, and rock beside it half as deep as it is
+    /// long.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breaks: Option<Breaks>,
+}
+
+/// How the rock bridges of a joint law break.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Breaks {
+    /// As a whole, under the tension, shear and bending of their section.
+    #[serde(rename = "by section")]
+    BySection,
+    /// Contact by contact.
+    #[serde(rename = "by node")]
+    ByNode,
 }
 
 impl JointLaw {
@@ -488,6 +506,7 @@ impl JointLaw {
             crush: None,
             tension_energy: None,
             shear_energy: None,
+            breaks: None,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm::model::Simulation;
-use enmm_run::check::Check;
+use enmm_run::check::{BridgeRecord, Check};
 use enmm_run::rock_mass::RockMass;
 use enmm_run::{Folder, Observer};
 
@@ -100,6 +100,26 @@ fn rock_mass(mass: &RockMass) -> String {
     )
 }
 
+/// Rock bridges that fit on a screen.
+const BRIDGES: usize = 20;
+
+/// Rock bridges, a line each.
+fn bridges(found: &[BridgeRecord]) -> Vec<String> {
+    let tell = |bridge: &BridgeRecord| {
+        let BridgeRecord { place: [x, y], length, characteristic_length, bending, breaks, because, .. } = bridge;
+        let rock = if *characteristic_length > 0.0 {
+            format!("characteristic length {characteristic_length:.4} m, bending strength {bending:.3} σt")
+        } else {
+            "brittle, bending strength σt".to_owned()
+        };
+        let because = because.map_or_else(String::new, |because| format!(": {because}"));
+        format!("rock bridge of {length:.4} m at ({x:.4}, {y:.4}) m: {rock}; breaks {breaks}{because}")
+    };
+    let more = found.len().saturating_sub(BRIDGES);
+    let more = (more > 0).then(|| format!("and {more} rock bridges more: --json has all"));
+    found.iter().take(BRIDGES).map(tell).chain(more).collect()
+}
+
 fn json_line(found: &Check) -> String {
     serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }
@@ -137,6 +157,7 @@ fn table(found: &Check) -> String {
     ];
     let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<22} {value}")).collect();
     lines.extend(found.rock_masses.iter().map(rock_mass));
+    lines.extend(bridges(&found.bridges));
     lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")

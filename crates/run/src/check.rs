@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use enmm::geometry::Point;
-use enmm::model::assemble::ignored_traces;
+use enmm::model::assemble::{Breaking, Bridge, ignored_traces};
 use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
 
@@ -67,6 +67,9 @@ pub struct Check {
     /// Rock that yields by Hoek–Brown.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rock_masses: Vec<RockMass>,
+    /// Rock bridges that can break.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bridges: Vec<BridgeRecord>,
     /// What the build has changed in the drawing.
     pub notes: Vec<String>,
     /// Warnings for the user.
@@ -108,6 +111,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         trace_ends: TraceEndRecord::all(built),
         crumbs: CrumbRecord::all(built),
         rock_masses: rock_masses(simulation.case()),
+        bridges: built.bridges.iter().map(BridgeRecord::of).collect(),
         notes: built.notes.clone(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
@@ -116,6 +120,48 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
 fn default_stiffness(simulation: &Simulation) -> Option<f64> {
     let mut laws = simulation.case().joint_laws.values().zip(&simulation.model().laws);
     laws.find(|(law, _)| law.normal_stiffness.is_none()).map(|(_, law)| law.normal_stiffness)
+}
+
+/// A rock bridge between two blocks.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BridgeRecord {
+    /// Number of its trace.
+    pub joint: usize,
+    /// Its middle (m).
+    pub place: [f64; 2],
+    /// Its length (m).
+    pub length: f64,
+    /// Characteristic length of its rock (m); 0 where that is brittle.
+    pub characteristic_length: f64,
+    /// Strength in bending over tensile strength.
+    pub bending: f64,
+    /// `by section` or `by node`.
+    pub breaks: &'static str,
+    /// Why by node; none by section, and where the law says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub because: Option<&'static str>,
+}
+
+impl BridgeRecord {
+    fn of(bridge: &Bridge) -> Self {
+        let Bridge { trace, place, length, characteristic, bending, breaking } = *bridge;
+        let because = match breaking {
+            Breaking::BySection | Breaking::Asked => None,
+            Breaking::WithoutTension => Some("it has no tensile strength"),
+            Breaking::Soft => Some("its characteristic length is more than four times its length"),
+            Breaking::Shallow => Some("rock beside it is less than half as deep as it is long"),
+            Breaking::TurnsBack => Some("its line turns back"),
+        };
+        Self {
+            joint: trace,
+            place: place.into(),
+            length,
+            characteristic_length: characteristic,
+            bending,
+            breaks: if breaking == Breaking::BySection { "by section" } else { "by node" },
+            because,
+        }
+    }
 }
 
 /// A part of the memory that a model needs while it runs.

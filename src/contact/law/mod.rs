@@ -2,10 +2,12 @@
 
 mod barton_bandis;
 mod dilation;
+mod section_bond;
 mod softening;
 
 pub use barton_bandis::{Closure, Roughness};
 pub use dilation::{LiftLoad, Lifted};
+pub use section_bond::SectionBond;
 pub use softening::{Bond, Damaged, Softening};
 
 use crate::geometry::id;
@@ -94,6 +96,10 @@ pub(super) fn shear_on([friction, cohesion]: [f64; 2], normal: f64) -> f64 {
 }
 
 impl Limits {
+    /// Those of bonds whose section decides what they carry.
+    pub const UNLIMITED: Self =
+        Self::MohrCoulomb { friction: 0.0, cohesion: f64::INFINITY, tension: f64::INFINITY, felt: 0.0 };
+
     /// Greatest shear force (N/m) of a contact of tributary `length` (m) under a normal force (N/m, compression
     /// positive).
     #[inline(always)]
@@ -207,13 +213,25 @@ impl JointLaw {
             tension: self.tension * scale,
             opening: softening.opening,
             shear_energy: softening.shear_energy * scale,
-            shear: [
-                [self.friction * strength, self.cohesion * scale],
-                [self.residual_friction * strength, self.residual_cohesion * scale],
-            ],
+            shear: self.shear_lines(length, strength),
             damage,
             slip,
         })
+    }
+
+    /// As [`Self::bond`], of a contact on a section that lets its bonds carry some shares.
+    pub fn section_bond(&self, stiffness: [f64; 2], length: f64, strength: f64, share: [f64; 2]) -> SectionBond {
+        let tension = self.tension * (length * strength);
+        SectionBond { stiffness, tension, shear: self.shear_lines(length, strength), share }
+    }
+
+    /// tan φ and cohesive force (N/m) over a length (m), peak and residual, times a factor on the strength.
+    fn shear_lines(&self, length: f64, strength: f64) -> [[f64; 2]; 2] {
+        let scale = length * strength;
+        [
+            [self.friction * strength, self.cohesion * scale],
+            [self.residual_friction * strength, self.residual_cohesion * scale],
+        ]
     }
 
     /// Normal and shear spring (N/m per metre) of a contact of tributary `length` (m); the solver's own stiffness

@@ -113,8 +113,7 @@ impl Bond {
 
     /// Shear force (N/m) at the peak and after failure, under a normal force (N/m).
     pub fn strengths(&self, normal: f64) -> [f64; 2] {
-        let [peak, residual] = self.shear.map(|line| shear_on(line, normal));
-        [peak, residual.min(peak)]
+        strengths(self.shear, normal)
     }
 
     /// Slip (m) at which the shear strength under a normal force (N/m) is residual (Eq. 22c); 0 where it is lost at
@@ -185,6 +184,13 @@ impl Bond {
     pub fn stored(&self, opening: f64) -> f64 {
         if opening > 0.0 { self.energy(opening, self.damage) } else { 0.5 * self.stiffness[0] * opening * opening }
     }
+}
+
+/// Shear force (N/m) at the peak and after failure, of tan φ and cohesive force (N/m) of both, under a normal force
+/// (N/m).
+pub(super) fn strengths(shear: [[f64; 2]; 2], normal: f64) -> [f64; 2] {
+    let [peak, residual] = shear.map(|line| shear_on(line, normal));
+    [peak, residual.min(peak)]
 }
 
 /// Force (N/m) that gives the energy `left` (J/m) over a way (m) of which a unit of force takes `c` (m²/N); the

@@ -63,21 +63,21 @@ impl NarrowPhase<'_> {
     fn make_found(&self, candidate: &ContactCandidate, found: &mut FoundContact, contact: &mut VertexEdge) {
         let Tributary { length, bonded, penalty, share, keeps } = self.tributary(candidate.node, candidate);
         let law = self.law(candidate.node, candidate.edge);
-        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law };
+        let mut bond = BondHistory { damage: 0.0, lengths: [length, bonded], law, section: None };
         if self.softens {
             bond = self.bond(candidate, bond);
         }
         let [length, bonded] = bond.lengths;
         *found = FoundContact { near_side: candidate.near_side, length, bonded, penalty, share, keeps };
-        self.make_one(candidate, (found, bond.damage, bond.law), contact);
+        self.make_one(candidate, (found, bond.past(), bond.law), contact);
     }
 
-    /// Makes a contact as it was found, with the damage of its bond and its law.
+    /// Makes a contact as it was found, with the past of its bond and its law.
     #[inline(always)]
     fn make_one(
         &self,
         candidate: &ContactCandidate,
-        (found, damage, law): (&FoundContact, f64, LawId),
+        (found, past, law): (&FoundContact, f64, LawId),
         contact: &mut VertexEdge,
     ) {
         let (boundary, node) = (self.rule.boundary, candidate.node);
@@ -119,7 +119,7 @@ impl NarrowPhase<'_> {
             gap,
             length,
             bonded,
-            past: damage,
+            past,
             law,
             torn: false,
             fresh: candidate.held.is_none(),
@@ -141,12 +141,14 @@ impl NarrowPhase<'_> {
 
     /// The bond of a contact in the first step: where its faces lie on joints of several laws, the part of its length
     /// that lies on the bond is bonded, and the bond is that of the least cohesion. Without such a part it has the law
-    /// of its faces. Faces at an angle to the edge have no part in it.
+    /// of its faces. Faces at an angle to the edge have no part in it. Of the sections on which the node lies with that
+    /// law it breaks with the one that has most of it.
     fn first_bond(&self, candidate: &ContactCandidate, new: BondHistory) -> BondHistory {
         let (boundary, node) = (self.rule.boundary, candidate.node);
         let along = |point: EdgeId| self.rule.frames.position(point).dot(&candidate.tangent);
         let [from, to] = self.faced(candidate, along);
         let (mut all, mut soft, mut bond, mut plain) = (0.0, 0.0, None::<LawId>, None);
+        let mut section = (0.0, None);
         for edge in boundary.edges_about(node) {
             let ends = [edge, boundary.after(edge)];
             let [start, end] = ends.map(|point| self.rule.frames.position(point));
@@ -159,13 +161,19 @@ impl NarrowPhase<'_> {
             all += over;
             if self.laws[own].softening.is_some() {
                 soft += over;
+                if over > section.0 {
+                    section = (over, self.sections.of(edge));
+                }
                 bond = bond.filter(|&law| self.laws[law].cohesion <= self.laws[own].cohesion).or(Some(own));
             } else {
                 plain = plain.or(Some(own));
             }
         }
         match bond {
-            Some(law) => BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, ..new },
+            Some(law) => {
+                let section = section.1.filter(|&section| self.sections.list[section].law == law);
+                BondHistory { lengths: [new.lengths[0], new.lengths[1] * (soft / all)], law, section, ..new }
+            }
             None if self.laws[new.law].softening.is_some() => BondHistory { law: plain.unwrap_or(new.law), ..new },
             None => new,
         }

@@ -14,7 +14,9 @@ use crate::mechanics::StressField;
 use near_sides::{NearRun, NearSide};
 use prefilter::Nearest;
 
-use super::{BondHistory, ContactCandidate, FoundContact, JointLaw, LawId, NearPair, NodeId, VertexEdge, VertexRule};
+use super::{
+    BondHistory, ContactCandidate, FoundContact, JointLaw, LawId, NearPair, NodeId, Sections, VertexEdge, VertexRule,
+};
 
 pub use near_sides::NearSides;
 pub use prefilter::prefiltered;
@@ -54,6 +56,8 @@ pub struct NarrowPhase<'a> {
     pub softens: bool,
     /// Bonds of the contacts of the last step; empty in a model whose joints do not soften.
     pub bonds: &'a [BondHistory],
+    /// Sections of rock bridges.
+    pub sections: &'a Sections,
     /// Stress xx, yy, xy (Pa) before the first step, by position.
     pub in_situ: Option<&'a StressField>,
     /// Whether to keep to the calling thread.

@@ -7,7 +7,7 @@
 
 use enmm_lanes::First;
 
-use crate::contact::{Bond, Closure, ContactSetting, Pair, Slide, SoftSpring, Spring, VertexEdge};
+use crate::contact::{Closure, ContactSetting, Hold, Pair, Slide, SoftSpring, Spring, VertexEdge};
 use crate::cover;
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
@@ -28,7 +28,7 @@ struct Equation {
     /// Curve of the normal spring.
     closure: Closure,
     /// Bond that softens.
-    bond: Option<Bond>,
+    bond: Option<Hold>,
     /// The slide before a lift, at the velocity along the edge without contact forces, but for forces of a sweep.
     slide: Slide,
 }
@@ -194,7 +194,7 @@ fn asked(contact: &VertexEdge, equation: &Equation, setting: &ContactSetting, u:
         let pull = bond.normal(normal, kept_normal);
         let trial = shear / (1.0 + kept_shear);
         let ease = (1.0 + kept_shear) / contact.stiffness[1];
-        let limit = bond.shear(pull, trial.abs(), ease, bond.damage_at(kept_normal * pull - normal));
+        let limit = bond.shear(pull, trial.abs(), ease, kept_normal * pull - normal);
         return [pull, trial.clamp(-limit, limit)];
     }
     // Of a joint that closes on a curve the sum above is the closure from which the force follows (Eq. 35).

@@ -373,8 +373,8 @@ impl WideContact {
                 asked[lane] = bond.normal(closes, takes);
                 // Of the shear spring the answer is the force, of which `kept` is the share that it takes from itself.
                 let ease = 1.0 / (contact.stiffness[1] * (1.0 - self.answers[1].kept[lane]));
-                let opened = bond.damage_at(takes * asked[lane] - closes);
-                limits[lane] = bond.shear(asked[lane], shear[lane].abs(), ease, opened);
+                let opening = takes * asked[lane] - closes;
+                limits[lane] = bond.shear(asked[lane], shear[lane].abs(), ease, opening);
                 continue;
             }
             let (closure, law) = (contact.closure(setting), contact.limits(setting));

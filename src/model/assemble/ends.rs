@@ -24,6 +24,8 @@ pub struct TraceEnd {
     pub gap: f64,
     /// The line: `the outline`, or a joint.
     pub line: String,
+    /// Where the way from the end to the line meets it (m).
+    pub meets: Point,
     /// What became of the end.
     pub change: EndChange,
 }
@@ -49,17 +51,22 @@ pub(super) fn join(
     if let Some(law) = case.domain.bridge_law.as_ref().and_then(|name| law_of(case, name)) {
         ends.iter_mut().for_each(|end| bridge(end, law, joints));
     }
-    let named = |end: &NearEnd| TraceEnd {
-        name: name(joints, end.trace),
+    Ok(ends.iter().map(|end| named(end, |trace| name(joints, trace))).collect())
+}
+
+/// An end with the names of its trace and of its line.
+pub(super) fn named(end: &NearEnd, name: impl Fn(TraceId) -> String) -> TraceEnd {
+    TraceEnd {
+        name: name(end.trace),
         place: end.place,
         gap: end.gap,
         line: match end.line {
             EndLine::Outline => "the outline".to_owned(),
-            EndLine::Trace(trace) => name(joints, trace),
+            EndLine::Trace(trace) => name(trace),
         },
+        meets: end.meets,
         change: end.change,
-    };
-    Ok(ends.iter().map(named).collect())
+    }
 }
 
 /// Leads a rock bridge of a law from an end that stays in the rock to its line.
@@ -77,20 +84,25 @@ fn bridge(end: &mut NearEnd, law: LawId, joints: &mut Joints) {
 }
 
 /// The set of a trace, unless it is a joint of the case or a piece that a region with another law has parted.
-fn set_of(joints: &Joints, trace: TraceId) -> Option<usize> {
-    joints.set_start.windows(2).position(|range| (range[0]..range[1]).contains(&trace.index()))
+fn set_of(set_start: &[usize], trace: TraceId) -> Option<usize> {
+    set_start.windows(2).position(|range| (range[0]..range[1]).contains(&trace.index()))
 }
 
 fn ends_on_purpose(case: &Case, joints: &Joints, trace: TraceId) -> bool {
     let is_short = |set: &JointSet| set.trace_length.is_some() || set.gap > 0.0;
-    set_of(joints, trace).is_some_and(|set| is_short(&case.joint_sets[set]))
+    set_of(&joints.set_start, trace).is_some_and(|set| is_short(&case.joint_sets[set]))
 }
 
 fn name(joints: &Joints, trace: TraceId) -> String {
-    if let Ok(bridge) = joints.bridges.binary_search(&trace.index()) {
+    name_in(&joints.set_start, &joints.bridges, trace)
+}
+
+/// The name of a trace, where sets begin with some traces and bridges are others.
+pub(super) fn name_in(set_start: &[usize], bridges: &[usize], trace: TraceId) -> String {
+    if let Ok(bridge) = bridges.binary_search(&trace.index()) {
         return format!("rock bridge {bridge}");
     }
-    set_of(joints, trace).map_or_else(|| format!("joint[{}]", trace.index()), |set| format!("joint_set[{set}]"))
+    set_of(set_start, trace).map_or_else(|| format!("joint[{}]", trace.index()), |set| format!("joint_set[{set}]"))
 }
 
 /// The ends that were joined to a line, and those that rock holds, in a line of text each.

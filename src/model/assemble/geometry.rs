@@ -69,13 +69,13 @@ fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {
 }
 
 /// Validated loops of rock (counter-clockwise) and holes.
-struct Loops {
+pub(super) struct Loops {
     rock: Vec<Vec<Point>>,
     holes: Vec<Vec<Point>>,
 }
 
 impl Loops {
-    fn read(case: &Case) -> Result<Self, Invalid> {
+    pub fn read(case: &Case) -> Result<Self, Invalid> {
         let domain = &case.domain;
         let read = |key: &str, list: &[[f64; 2]]| validate_loop(&points(list), key).map_err(invalid(key));
         let outline = read("domain.outline", &domain.outline)?;
@@ -94,13 +94,13 @@ impl Loops {
     }
 
     /// Whether a point lies in the outline or beside it in an island, and in no hole.
-    fn hold(&self, p: Point) -> bool {
+    pub fn hold(&self, p: Point) -> bool {
         let within = |loops: &[Vec<Point>]| loops.iter().any(|l| polygon::contains(l, p));
         within(&self.rock) && !within(&self.holes)
     }
 
     /// The sides of all loops.
-    fn sides(&self) -> Vec<[Point; 2]> {
+    pub fn sides(&self) -> Vec<[Point; 2]> {
         let loops = self.rock.iter().chain(&self.holes);
         loops.flat_map(|ring| polygon::sides(ring)).map(|(a, b)| [a, b]).collect()
     }

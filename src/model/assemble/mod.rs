@@ -7,16 +7,19 @@ mod geometry;
 mod integrators;
 mod joints;
 mod locator;
+mod locked;
 mod memory;
 mod ports;
 mod quiet;
 mod rock;
+mod sections;
 mod slips;
 mod stage;
 mod warnings;
 
 use crate::contact::{
-    BoltState, Boundary, EntranceRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Softening, Support,
+    BoltState, Boundary, EntranceRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
+    Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::{NodingReport, Point, Vector, polygon};
@@ -31,6 +34,8 @@ use locator::Locator;
 
 pub use ends::TraceEnd;
 pub use integrators::{ExplicitAlone, Integrators};
+pub use locked::locked_ends;
+pub use sections::{Breaking, Bridge};
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
 
@@ -53,6 +58,8 @@ pub struct Built {
     pub set_start: Vec<usize>,
     /// Ends of joints near the outline or another joint: those joined to it, and those that rock holds.
     pub ends: Vec<TraceEnd>,
+    /// Rock bridges that can break, and whether each breaks as a whole.
+    pub bridges: Vec<Bridge>,
     /// Blocks below the least area.
     pub crumbs: Vec<Crumb>,
     /// What the build changed in the drawing, for the user to know.
@@ -82,6 +89,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines), tolerance, tell)?;
     model.integrator =
         integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
+    let bridges = sections::of_bridges(case, &joints, &mut model);
     tell(BuildStage::Start);
     quiet::check_columns(&model)?;
     warnings::check_stages(case, &model)?;
@@ -106,6 +114,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
         traces: joints.traces,
         set_start: joints.set_start,
         ends,
+        bridges,
         crumbs,
         notes,
         warnings,
@@ -129,9 +138,8 @@ fn model(
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
-    let rocks: Vec<Elasticity> = case.rocks.values().map(rock::elasticity).collect();
     let positions = Locator { covers: &covers, outlines, tolerance };
-    let (element_rock, averaging) = rock::of_elements(case, &positions)?;
+    let (rocks, element_rock, averaging) = rock::of_elements(case, &positions)?;
     let ground = quiet::Ground { case, positions: &positions, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
@@ -152,6 +160,7 @@ fn model(
         laws: joint_laws(case, joints, stiffness_over(1.0, case, &rocks))?,
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
+        sections: Sections::default(),
         fixities,
         supports,
         fixed_supports,
@@ -419,6 +428,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         velocity,
         contacts: Vec::new(),
         bonds: Vec::new(),
+        sections: vec![None; model.sections.list.len()],
         found: FoundContacts::default(),
         neighbours: Default::default(),
         support_force: model.supports.iter().map(|s| s.preload).collect(),

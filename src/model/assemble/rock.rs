@@ -10,7 +10,7 @@ use super::locator::Locator;
 use super::points;
 
 /// Elastic constants of a rock of the case.
-pub(super) fn elasticity(rock: &Rock) -> Elasticity {
+fn elasticity(rock: &Rock) -> Elasticity {
     match rock.plane {
         Plane::Strain => Elasticity::plane_strain(rock.young, rock.poisson, rock.density),
         Plane::Stress => Elasticity::plane_stress(rock.young, rock.poisson, rock.density),
@@ -41,12 +41,13 @@ fn criterion(rock: &Rock) -> Criterion {
     }
 }
 
-/// Rock of each element, and the patches of those that can yield.
-pub(super) fn of_elements(case: &Case, positions: &Locator) -> Result<(Vec<u16>, Averaging), Invalid> {
+/// All rocks, that of each element, and the patches of those that can yield.
+pub(super) fn of_elements(case: &Case, positions: &Locator) -> Result<(Vec<Elasticity>, Vec<u16>, Averaging), Invalid> {
+    let rocks = case.rocks.values().map(elasticity).collect();
     let rock = assign(case, positions)?;
     let yields = case.rocks.values().map(Rock::yields).collect();
     let averaging = Averaging::new(positions.covers, &rock, yields);
-    Ok((rock, averaging))
+    Ok((rocks, rock, averaging))
 }
 
 /// No plastic strain in any element; empty when no rock yields.

@@ -5,7 +5,7 @@ use crate::geometry::Vector;
 use crate::mechanics::{self, MassMatrix};
 use crate::state::{ChunkSums, Ledger, Model, MotionBuffers, SelectionBuffers, State, SweepBuffers, Workspace};
 
-use super::bonds::{has_bonds, settle_bonds};
+use super::bonds::{Bonds, begin_sections, has_bonds};
 use super::chunk_runs::{self, ChunkSlices};
 use super::columns::move_columns;
 use super::finish::Finish;
@@ -17,7 +17,8 @@ use super::{Regime, StepOutcome, StepReport, Substep, guard, report};
 
 /// Ends a sub-step; the outcome holds the report of its start when one is wanted.
 pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace: &mut Workspace) -> StepOutcome {
-    let Workspace { mass_matrix, motion, sums, frames, selection, contacts, outcomes, supports, sweep, .. } = workspace;
+    let Workspace { mass_matrix, motion, sums, frames, selection, contacts, .. } = workspace;
+    let Workspace { outcomes, supports, sweep, sections, .. } = workspace;
     let totals = finish(model, state, step, mass_matrix, motion, sweep, sums);
     let setting = model.contact_setting(&state.laws, frames, selection);
     let (velocities, counters) = ([&state.velocity[..], &motion.predicted], &mut state.counters);
@@ -25,8 +26,11 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     settle_supports(&supports.rows, &mut state.support_force);
     let mut works = contact_works(model, step.kick, velocities, outcomes, supports);
     if has_bonds(&state.laws) {
-        let (histories, bonds) = (&mut state.contacts, &mut state.bonds);
-        works.add_works(&settle_bonds(setting, step, velocities[1], contacts, histories, bonds, counters), 1.0);
+        let (histories, bonds) = (&mut state.contacts[..], &mut state.bonds);
+        let mut bonds = Bonds { setting, step, velocities, contacts, histories, bonds, counters };
+        begin_sections(&model.sections, &setting, sections);
+        works.add_works(&bonds.settle(sections), 1.0);
+        works.fracture += bonds.break_sections(model, sections, &mut state.sections);
     }
     works.damping = totals.damping;
     let forces = (extra(model, state, step), totals.row_sum);

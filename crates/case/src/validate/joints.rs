@@ -2,7 +2,7 @@
 
 use super::checks::{Check, Range, fail, number, optional};
 use crate::key::Key;
-use crate::{Case, Integrator, JointLaw, JointLawKind, LawChange};
+use crate::{Breaks, Case, Integrator, JointLaw, JointLawKind, LawChange};
 
 /// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
 const RESIDUAL: Range = Range::from(0.0).to(70.0);
@@ -37,6 +37,7 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
         ("residual_tension", law.residual_tension != 0.0),
         ("tension_energy", law.tension_energy.is_some()),
         ("shear_energy", law.shear_energy.is_some()),
+        ("breaks", law.breaks.is_some()),
     ];
     if let Some((name, _)) = strengths.iter().find(|(_, given)| *given) {
         let message = "a law of kind barton_bandis has no such strength: `friction_deg`, `jrc` and `jcs` give it; \
@@ -110,12 +111,46 @@ pub fn validate_energies(key: &Key, law: &JointLaw) -> Check {
     Ok(())
 }
 
+/// Checks that what breaks by section has the strength of one.
+///
+/// # Errors
+/// The law has no tensile strength, keeps it after failure, or belongs to no rock bridge.
+pub fn validate_breaks(key: &Key, law: &JointLaw, is_of_bridge: bool) -> Check {
+    let Some(breaks) = law.breaks else { return Ok(()) };
+    let key = key.field("breaks");
+    if !is_of_bridge {
+        let message = "is for rock bridges, and none has this law; remove it, or give the law to a `[[bridge]]`, a \
+                       `bridge_law` of a joint set or `domain.bridge_law`";
+        return fail(&key, message);
+    }
+    if breaks == Breaks::BySection && law.tension == 0.0 {
+        let message = "is \"by section\", but `tension` is 0 Pa, so that any bending breaks all of a bridge; add \
+                       `tension`, or let it break \"by node\"";
+        return fail(&key, message);
+    }
+    if breaks == Breaks::BySection && law.residual_tension > 0.0 {
+        let message = format!(
+            "is \"by section\", but the bridge keeps a tensile strength of {} Pa (`residual_tension`); remove one",
+            law.residual_tension
+        );
+        return fail(&key, message);
+    }
+    Ok(())
+}
+
 /// Checks that the integrator knows what the law has.
 ///
 /// # Errors
 /// The implicit one is asked for a law with an energy of fracture.
 pub fn validate_integrator(key: &Key, law: &JointLaw, integrator: Integrator) -> Check {
-    if integrator == Integrator::Explicit || !law.softens() {
+    if integrator == Integrator::Explicit {
+        return Ok(());
+    }
+    if law.breaks == Some(Breaks::BySection) {
+        let message = "the implicit integrator knows no sections; remove it, or set `solver.integrator = \"explicit\"`";
+        return fail(&key.field("breaks"), message);
+    }
+    if !law.softens() {
         return Ok(());
     }
     let name = if law.tension_energy.is_some() { "tension_energy" } else { "shear_energy" };

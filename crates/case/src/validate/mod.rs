@@ -60,6 +60,7 @@ impl Case {
             let key = root.field("joint_law").field(name);
             joint_law(&key, law)?;
             joints::validate_integrator(&key, law, self.solver.integrator)?;
+            joints::validate_breaks(&key, law, self.has_bridges_of(name))?;
         }
         joint_sets::validate_law_regions(&root.field("law_region"), self)?;
         gravity(&root.field("gravity"), &self.gravity)?;
@@ -97,6 +98,14 @@ impl Case {
     pub fn default_joint_law(&self) -> Option<&str> {
         let only = || self.joint_laws.keys().next().filter(|_| self.joint_laws.len() == 1);
         self.domain.joint_law.as_ref().or_else(only).map(String::as_str)
+    }
+
+    /// Whether rock bridges may have a law.
+    fn has_bridges_of(&self, law: &str) -> bool {
+        let of_sets = self.joint_sets.iter().filter_map(|set| set.bridge_law.as_deref());
+        let mut named = self.bridges.iter().map(|bridge| bridge.law.as_str()).chain(of_sets);
+        let of_regions = self.law_regions.iter().any(|region| region.to == law);
+        named.any(|name| name == law) || self.domain.bridge_law.as_deref() == Some(law) || of_regions
     }
 
     fn validate_joints(&self, root: &Key) -> Check {

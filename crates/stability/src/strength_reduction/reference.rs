@@ -4,6 +4,7 @@ use super::slip::slide;
 use super::{HELD, ReductionError, ReductionOptions};
 use crate::{left_out_stages, with_support_forces};
 use enmm::model::Simulation;
+use enmm::model::assemble::{TraceEnd, locked_ends};
 use enmm::model::case::{Case, Invalid, Stage, StageKind};
 use enmm::model::settle::REST_STEPS;
 
@@ -37,6 +38,7 @@ pub struct Rest {
 pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, ReductionError> {
     let (case, mut warnings) = trial_case(case)?;
     let mut simulation = Simulation::with_integrators(case, options.integrators, &mut |_| ())?;
+    refuse_locked(&simulation)?;
     let drive = simulation.drive();
     (drive.from.strength_factor, drive.to.strength_factor) = (HELD, HELD);
     while simulation.stage().kind == StageKind::Static {
@@ -52,6 +54,34 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
     warnings.extend(simulation.built().warnings.iter().cloned());
     let effort = (simulation.time(), simulation.state().step);
     Ok(Rest { simulation, effort, warnings })
+}
+
+/// Ends of joints that the refusal names.
+const NAMED: usize = 5;
+
+/// Refuses rock that yields and locks: at an end of a joint, too short for the mesh.
+fn refuse_locked(simulation: &Simulation) -> Result<(), Invalid> {
+    let size = simulation.case().mesh.size;
+    let ends = locked_ends(simulation.case(), simulation.built())?;
+    let Some(least) = ends.iter().map(|end| end.gap).min_by(f64::total_cmp) else { return Ok(()) };
+    let tell = |TraceEnd { name, place, gap, line, meets, .. }: &TraceEnd| {
+        format!(
+            "{gap:.3} m from the end of {name} at [{:.6}, {:.6}] to {line} at [{:.6}, {:.6}]",
+            place.x, place.y, meets.x, meets.y
+        )
+    };
+    let named: Vec<String> = ends.iter().take(NAMED).map(tell).collect();
+    let more = ends.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let message = format!(
+        "is {size} m, so that fewer than two elements of rock that yields lie between the end of a joint and \
+         another one, which cannot shear through and hold too much: {}{more}; give a `[[bridge]]` between these \
+         points whose law has the strength of the rock (or `domain.bridge_law` for all that are shorter than an \
+         element, `bridge_law` of a joint set for its gaps), or a mesh of {:.6} m or finer",
+        named.join(", "),
+        0.5 * least
+    );
+    Err(Invalid { key: "mesh.size".to_owned(), message })
 }
 
 fn slips_anyhow(slip: f64) -> String {
