@@ -208,7 +208,7 @@ impl Cosimulation {
             failed.map(|event| model.mass_matrix.total[event.subject as usize]).sum()
         };
         let before = mass(&events[..interval.events_before.min(events.len())]);
-        let is_new = events[interval.events_before..].iter().any(|event| event.kind == EventKind::Failed);
+        let is_new = events.iter().skip(interval.events_before).any(|event| event.kind == EventKind::Failed);
         let few = || self.simulation.mass_of_few();
         is_new && before <= few() && mass(events) > few()
     }

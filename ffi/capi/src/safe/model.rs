@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
-use enmm::model::SlopeFailure;
+use engine::model::SlopeFailure;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 use super::failure::{Failure, Outcome};
