@@ -3,7 +3,7 @@
 use crate::geometry::{Point, Vector, cross};
 
 /// Share of a motion that is none beside the rest of it.
-const SLIGHT: f64 = 0.1;
+pub(super) const SLIGHT: f64 = 0.1;
 
 /// Motion of a block as a rigid body: a displacement with a turn, or a velocity with a spin. Only ratios of motions
 /// count, so that a mechanism of limit analysis has a name as well.
@@ -27,6 +27,12 @@ impl RigidMotion {
     /// Half the diagonal of its box (m): how far its corners are from its middle.
     fn reach(&self) -> f64 {
         0.5 * (self.bounds[1] - self.bounds[0]).norm()
+    }
+
+    /// Motion of a point of it.
+    fn motion_at(&self, point: Point) -> Vector {
+        let arm = point - self.centroid;
+        self.motion + Vector::new(-arm.y, arm.x) * self.turn
     }
 
     /// Least and greatest coordinate of its box along a direction (m).
@@ -86,7 +92,7 @@ impl Mechanism {
 /// The way in which blocks move that move together, under a gravity of this direction; none where nothing moves. Blocks
 /// count by mass times way, and those not at all that move by less than a tenth of what others do.
 ///
-/// The way of a centroid is that of the block's foot and what turning over the foot adds. Where turning adds more than
+/// The way of a centroid is that of the foot below it and what turning over the foot adds. Where turning adds more than
 /// half, rock topples, or rotates if it turns against its way. It rotates, too, where turning moves corners farther
 /// than centroids. It falls where it goes straight down, or more down than aside with nothing that bears it. All else
 /// slides.
@@ -100,7 +106,7 @@ pub fn mechanism(blocks: &[RigidMotion], gravity: Vector) -> Option<Mechanism> {
         return None;
     }
     let down = gravity.try_normalize(0.0).unwrap_or_default();
-    let by_turning: f64 = blocks.iter().zip(feet(&blocks, down)).map(|(b, foot)| turned(b, foot, down)).sum();
+    let by_turning: f64 = blocks.iter().zip(feet(&blocks, down)).map(|(b, foot)| turned(b, &blocks[foot], down)).sum();
     let drop = sum(&|b| b.mass * b.motion.dot(&down));
     let aside = sum(&|b| b.mass * cross(b.motion, down).abs());
     let in_flight = sum(&|b| if drops(b, down) { b.way() } else { 0.0 });
@@ -120,16 +126,20 @@ fn drops(block: &RigidMotion, down: Vector) -> bool {
     !block.is_borne && block.motion.dot(&down) > cross(block.motion, down).abs()
 }
 
-/// What turning over a foot so far below it (m) adds to a block's way, times its mass; negative where it turns against
-/// its way.
-fn turned(block: &RigidMotion, foot: f64, down: Vector) -> f64 {
-    let forward = cross(block.motion.try_normalize(0.0).unwrap_or_default(), down);
-    block.mass * foot * block.turn * forward
+/// What turning over the foot below it adds to a block's way, times its mass; negative where it turns against its way.
+/// It is no more than what the foot has not moved itself, since blocks that tumble on others do not carry each other.
+fn turned(block: &RigidMotion, lowest: &RigidMotion, down: Vector) -> f64 {
+    let along = block.motion.try_normalize(0.0).unwrap_or_default();
+    let foot = block.centroid + down * (lowest.along(down)[1] - block.centroid.dot(&down));
+    let forward = (block.centroid - foot).norm() * block.turn * cross(along, down);
+    let beyond = (block.motion - lowest.motion_at(foot)).dot(&along);
+    let turned = if forward > 0.0 { forward.min(beyond.max(0.0)) } else { forward.max(beyond.min(0.0)) };
+    block.mass * turned
 }
 
-/// How far below the centroid of each block the foot of the moving rock lies on which it stands (m): the lowest corner
-/// of the blocks that are in the vertical strip with its centroid, or its own.
-fn feet(blocks: &[RigidMotion], down: Vector) -> Vec<f64> {
+/// For each block the one on whose foot it stands: that with the lowest corner of those in the vertical strip with its
+/// centroid, which may be itself.
+fn feet(blocks: &[RigidMotion], down: Vector) -> Vec<usize> {
     let aside = Vector::new(-down.y, down.x);
     let ends: Vec<[f64; 2]> = blocks.iter().map(|b| b.along(aside)).collect();
     let [low, high] = ends.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], e| [a.min(e[0]), b.max(e[1])]);
@@ -138,12 +148,14 @@ fn feet(blocks: &[RigidMotion], down: Vector) -> Vec<f64> {
         let share = (at - low) / (high - low).max(f64::MIN_POSITIVE);
         ((share * count as f64) as usize).min(count - 1)
     };
-    let mut lowest = vec![f64::NEG_INFINITY; count];
-    for (block, [begin, end]) in blocks.iter().zip(&ends) {
-        let bottom = block.along(down)[1];
-        lowest[strip(*begin)..=strip(*end)].iter_mut().for_each(|depth| *depth = depth.max(bottom));
+    let bottoms: Vec<f64> = blocks.iter().map(|b| b.along(down)[1]).collect();
+    let mut lowest: Vec<Option<usize>> = vec![None; count];
+    for (k, [begin, end]) in ends.iter().enumerate() {
+        for other in &mut lowest[strip(*begin)..=strip(*end)] {
+            *other = Some(other.filter(|&other| bottoms[other] >= bottoms[k]).unwrap_or(k));
+        }
     }
-    blocks.iter().map(|b| lowest[strip(b.centroid.dot(&aside))] - b.centroid.dot(&down)).collect()
+    blocks.iter().enumerate().map(|(k, b)| lowest[strip(b.centroid.dot(&aside))].unwrap_or(k)).collect()
 }
 
 #[cfg(test)]
@@ -228,6 +240,17 @@ mod tests {
             }
         };
         let blocks: Vec<RigidMotion> = (0..100).map(block).collect();
+        assert_eq!(mechanism(&blocks, GRAVITY), Some(Mechanism::Slides));
+    }
+
+    /// Ten layers on a plane of 45°, of which the lower ones slide without turning, and the upper ones tumble forward.
+    #[test]
+    fn blocks_that_tumble_on_a_slide_do_not_make_it_topple() {
+        let layer = |k: usize| RigidMotion {
+            turn: if k > 5 { 1.0 } else { 0.0 },
+            ..moved([2.0, 2.0], Point::new(0.0, 2.0 * k as f64), Vector::new(-10.0, -10.0))
+        };
+        let blocks: Vec<RigidMotion> = (0..10).map(layer).collect();
         assert_eq!(mechanism(&blocks, GRAVITY), Some(Mechanism::Slides));
     }
 

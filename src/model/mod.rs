@@ -2,6 +2,7 @@
 
 pub mod assemble;
 pub mod corners;
+mod failure;
 pub mod fit;
 pub mod mechanism;
 mod observe;
@@ -16,6 +17,7 @@ pub use enmm_case::Case;
 
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use corners::CornerContact;
+pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState};

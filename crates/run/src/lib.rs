@@ -18,6 +18,7 @@ pub mod rock_mass;
 mod run;
 mod stereonet;
 pub mod summary;
+pub mod verdict;
 pub mod vtu;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};
