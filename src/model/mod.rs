@@ -2,6 +2,7 @@
 
 pub mod assemble;
 pub mod fit;
+pub mod mechanism;
 mod observe;
 pub mod overlap;
 mod restless;
@@ -14,6 +15,7 @@ pub use enmm_case::Case;
 
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use fit::Unfit;
+pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState};
 pub use restless::Restless;
 pub use simulation::Simulation;
