@@ -53,10 +53,10 @@ fn main_results(records: &Records) -> String {
         rows.push(("F after the stage", text(&fos.json["stage"]).into()));
         rows.push(("Area that fails", plain(&failing["area"], "m²", Digits::Three).into()));
         rows.push(("Mass that fails", mass(&failing["mass"]).into()));
-        rows.push(("Factor by limit analysis", limit_factor(&fos.json["bound"])));
+        rows.push(("Upper bound by limit analysis", limit_factor(&fos.json["bound"])));
     }
     if let Some(bound) = records.bound.as_ref().filter(|_| records.fos.is_none()) {
-        rows.push(("Factor by limit analysis", limit_factor(&bound.json["bound"])));
+        rows.push(("Upper bound by limit analysis", limit_factor(&bound.json["bound"])));
         rows.push(("F after the stage", text(&bound.json["stage"]).into()));
     }
     if let Some(ensemble) = &records.ensemble {
