@@ -60,8 +60,8 @@ def _outputs(case: Case, output: Output, options: dict[str, Any], hear: Callable
 
 
 def _of_fos(found: "_tasks.Fos") -> dict[str, Any]:
-    """Factor and what fails. A factor beyond the search is its limit, with the status that says so, and one above an upper
-    bound is that bound."""
+    """Factor and what fails. A factor beyond the search is its limit, with the status that says so; one above an upper
+    bound is the bound."""
     low, high = found.bracket
     known = (found.at_most, found.factor, found.at_least, high)
     factor = next((value for value in known if value is not None), None)
