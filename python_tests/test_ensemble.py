@@ -261,8 +261,10 @@ def test_a_factor_above_limit_analysis_is_in_doubt(ensemble):
 
     from enmm.ensemble._outputs import _of_fos
 
-    found = SimpleNamespace(factor=1.8, bracket=(1.79, 1.81), status="found", failing=None, doubt="above the bound")
-    assert _of_fos(found)["doubt"] == found.doubt
+    held = {"factor": None, "at_least": None, "at_most": 1.7, "bracket": (1.79, 1.81)}
+    found = SimpleNamespace(**held, status="found", failing=None, doubt="above the bound")
+    row = _of_fos(found)
+    assert row["doubt"] == found.doubt and row["factor_of_safety"] == 1.7
 
 
 # Closed forms.

@@ -8,7 +8,7 @@ use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::{BoundFailure, Folder, bound_record, bracket_record, write_bound, write_bound_page, write_bracket_page};
 use enmm_stability::limit_analysis::continuum::{Bracket, TRIANGLES};
-use enmm_stability::limit_analysis::{Bound, Collapse, Factor};
+use enmm_stability::limit_analysis::{Bound, Factor, Row, Way};
 use enmm_stability::up_to_stage;
 use serde_json::Value;
 
@@ -139,23 +139,8 @@ fn bracket_text(bracket: &Bracket) -> String {
 }
 
 fn text(bound: &Bound) -> String {
-    let level = if bound.least == bound.level_tops.factor {
-        "upper bound for contacts that let level tops pass".to_owned()
-    } else {
-        format!(
-            "an upper bound of a factor of at least {:.4}: some choices at crossings were not tried",
-            bound.least.value()
-        )
-    };
-    let rows = [
-        ("associated", &bound.associated, "exact where joints dilate by their friction angle".to_owned()),
-        ("level tops pass", &bound.level_tops, level),
-        ("every corner catches", &bound.catching, "factor if no crossing lets a block pass".to_owned()),
-    ];
-    let row = |(name, collapse, meaning): (&str, &Collapse, String)| {
-        format!("{name:<21} {:<14} {meaning}", collapse.factor.to_string())
-    };
-    let mut lines: Vec<String> = rows.into_iter().map(row).collect();
+    let row = |row: Row| format!("{:<21} {:<14} {}", row.name, row.collapse.factor.to_string(), row.meaning);
+    let mut lines: Vec<String> = bound.rows().into_iter().map(row).collect();
     lines.push(format!("{:<21} {}", "mechanism", mechanism(bound)));
     lines.push(format!(
         "{:<21} {} blocks, {} free; {} interfaces, {} points, {} pairs of facing corners; {} linear programs",
@@ -166,7 +151,7 @@ fn text(bound: &Bound) -> String {
     lines.join("\n")
 }
 
-/// The blocks that move when level tops pass, fastest first.
+/// The way in which the slope fails when level tops pass, and the blocks that move, fastest first.
 fn mechanism(bound: &Bound) -> String {
     let moving = &bound.level_tops.mechanism;
     if moving.is_empty() {
@@ -180,5 +165,6 @@ fn mechanism(bound: &Bound) -> String {
     }));
     let mass: f64 = moving.iter().map(|b| b.mass).sum();
     let blocks = if moving.len() == 1 { "block" } else { "blocks" };
-    format!("{} {blocks}, {mass:.4e} kg/m: {names}", moving.len())
+    let way = bound.level_tops.way.map(Way::words).unwrap_or_default();
+    format!("{way}\n{:<21} {} {blocks}, {mass:.4e} kg/m: {names}", "", moving.len())
 }

@@ -21,7 +21,7 @@ use enmm_stability::strength_reduction::{
 use crate::case::CaseArguments;
 use crate::progress::Search;
 use crate::run::{INTERRUPT, check_folder, directory_for, interrupt};
-use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
+use crate::{AT_MOST, BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
 #[derive(Args)]
@@ -185,6 +185,10 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
     let main = found.main();
     let message = remedy(main).unwrap_or_default();
     match main.end {
+        End::Found | End::StableThroughout if main.at_most().is_some() => {
+            let doubt = main.doubt().unwrap_or_default();
+            fail(&format!("the factor of safety is at most the upper bound of limit analysis: {doubt}"), AT_MOST)
+        }
         End::Found => ExitCode::SUCCESS,
         End::StableThroughout => {
             if !arguments.json {
@@ -201,7 +205,9 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
 fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String {
     let mut lines = vec![String::new()];
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<20} {text}"));
-    if let (Some(factor), Some(low), Some(high)) = (reduction.factor(), reduction.low, reduction.high) {
+    if let (Some(most), Some(low)) = (reduction.at_most(), reduction.low) {
+        tell("factor of safety", format!("at most {most:.4}, an upper bound: trials were stable up to {low:.4}"));
+    } else if let (Some(factor), Some(low), Some(high)) = (reduction.factor(), reduction.low, reduction.high) {
         tell("factor of safety", format!("{factor:.4} (stable at {low:.4}, not at {high:.4})"));
     } else if let Some(least) = reduction.at_least() {
         tell("factor of safety", format!("at least {least:.4}"));
@@ -211,13 +217,17 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
         (Some(bracket), _) => {
             tell(
                 "limit analysis",
-                format!("{} to {} where rock dilates by its friction", bracket.lower, bracket.upper),
+                format!(
+                    "{} to {}, lower and upper bound where rock dilates by its friction",
+                    bracket.lower, bracket.upper
+                ),
             );
         }
         (None, Ok(bound)) => {
-            let [level, associated] =
-                [&bound.level_tops, &bound.associated].map(|collapse| collapse.factor.to_string());
-            tell("limit analysis", format!("{level} where level tops pass, {associated} associated"));
+            tell("limit analysis", bound.summary());
+            if let Some(way) = bound.level_tops.way {
+                tell("", format!("its mechanism {}", way.words()));
+            }
             if bound.softens {
                 tell("", DUCTILE.to_owned());
             }
@@ -243,10 +253,11 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
 
 /// The factor of the slope beside those of its chips.
 fn chips(found: &Found) -> Option<String> {
-    let factor = |search: &Reduction| match (search.factor(), search.at_least()) {
-        (Some(factor), _) => format!("{factor:.4}"),
-        (None, Some(least)) => format!("at least {least:.4}"),
-        (None, None) => "none".to_owned(),
+    let factor = |search: &Reduction| match (search.at_most(), search.factor(), search.at_least()) {
+        (Some(most), ..) => format!("at most {most:.4}"),
+        (None, Some(factor), _) => format!("{factor:.4}"),
+        (None, None, Some(least)) => format!("at least {least:.4}"),
+        (None, None, None) => "none".to_owned(),
     };
     let of_chip = |chip: &Reduction| {
         let area = chip.first_unstable().map_or(0.0, Trial::failing_area);

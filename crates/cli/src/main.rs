@@ -33,6 +33,8 @@ const BAD_INPUT: u8 = 2;
 const FAILED: u8 = 3;
 /// The slope failed in a static stage.
 const SLOPE_FAILED: u8 = 4;
+/// Exit status of a factor of safety of which an upper bound alone is known: trials above it were stable.
+const AT_MOST: u8 = 5;
 /// Interrupted by the user.
 const INTERRUPTED: u8 = 130;
 
@@ -47,7 +49,8 @@ Examples:
   enmm fos slope.toml --set joint_law.fault.friction_deg=25
 
 Exit status: 0 done; 1 a verification problem missed its answer; 2 bad input, nothing written; 3 numerical failure, or
-output that could not be written; 4 the slope failed in a static stage (enmm run); 130 interrupted.";
+output that could not be written; 4 the slope failed in a static stage (enmm run); 5 the factor of safety is at most an
+upper bound (enmm fos); 130 interrupted.";
 
 /// Explicit numerical manifold method for jointed rock slopes.
 #[derive(Parser)]

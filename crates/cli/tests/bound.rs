@@ -8,14 +8,20 @@ fn a_block_on_an_incline_is_bounded_by_its_tangents() {
     let place = Place::with(&incline(0.65, ""));
     let answer = place.enmm(&["bound", "case.toml"]);
     assert_eq!(answer.status, Some(0), "{answer:?}");
-    assert!(answer.stdout.contains("associated            1.3000"), "{answer:?}");
+    assert!(answer.stdout.contains("associated            1.3000         upper bound"), "{answer:?}");
+    assert!(answer.stdout.contains("without normality     1.3000         estimate, no bound"), "{answer:?}");
+    assert!(answer.stdout.contains("slides as one: such bounds lie close to the factor"), "{answer:?}");
     let answer = place.enmm(&["bound", "case.toml", "--json"]);
     let found: serde_json::Value = serde_json::from_str(answer.stdout.trim()).expect("one JSON object");
-    for kind in ["associated", "level_tops", "catching"] {
+    for kind in ["associated", "level_tops", "catching", "bare", "estimate"] {
         assert_eq!(found[kind]["end"], "found");
         assert!(found[kind]["factor"].as_f64().is_some_and(|factor| (factor - 1.3).abs() < 1e-4), "{found}");
     }
     assert_eq!(found["level_tops"]["mechanism"].as_array().map(Vec::len), Some(1));
+    assert!(
+        found["level_tops"]["meaning"].as_str().is_some_and(|meaning| meaning.starts_with("upper bound")),
+        "{found}"
+    );
     assert_eq!(place.names(), ["case", "case.toml"], "the page goes to the folder of the case");
     let files =
         std::fs::read_dir(place.path("case/bound")).expect("a folder").map(|file| file.expect("a file").file_name());

@@ -56,10 +56,10 @@ fn main_results(records: &Records) -> String {
         rows.push(("F after the stage", stage_of_factor(&fos.json)));
         rows.push(("Area that fails", plain(&failing["area"], "m²", Digits::Three).into()));
         rows.push(("Mass that fails", mass(&failing["mass"]).into()));
-        rows.push(("Factor by limit analysis", limit_factor(&fos.json["bound"])));
+        rows.push(("Upper bound by limit analysis", limit_factor(&fos.json["bound"])));
     }
     if let Some(bound) = records.bound.as_ref().filter(|_| records.fos.is_none()) {
-        rows.push(("Factor by limit analysis", limit_factor(&bound.json["bound"])));
+        rows.push(("Upper bound by limit analysis", limit_factor(&bound.json["bound"])));
         rows.push(("F after the stage", stage_of_factor(&bound.json)));
     }
     if let Some(ensemble) = &records.ensemble {

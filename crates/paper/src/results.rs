@@ -143,13 +143,12 @@ fn bolts(records: &Value, of: &Record) -> String {
 
 /// The factor of safety, or the bound on it that was found.
 pub fn factor_cell(json: &Value) -> Cell {
-    let found = plain(&json["factor_of_safety"], "", Three);
-    let least = plain(&json["at_least"], "", Three).map(|least| Cell::Mixed(vec![("at least ".to_owned(), least)]));
-    match (found, least) {
-        (Some(found), _) => found.into(),
-        (None, Some(least)) => least,
-        (None, None) => "not found".into(),
-    }
+    let found = plain(&json["factor_of_safety"], "", Three).map(Cell::from);
+    let side = |key: &str, word: &str| {
+        plain(&json[key], "", Three).map(|number| Cell::Mixed(vec![(format!("{word} "), number)]))
+    };
+    let most = side("at_most", "at most");
+    most.or(found).or(side("at_least", "at least")).unwrap_or_else(|| "not found".into())
 }
 
 /// A factor of limit analysis with the side on which it lies.
@@ -176,6 +175,11 @@ pub fn limit_factor(bound: &Value) -> Cell {
     }
 }
 
+/// The way in which the mechanism of a bound moves.
+fn way(bound: &Value) -> Cell {
+    text(&bound["level_tops"]["way"]).into()
+}
+
 /// F with its convention, what fails, trials, bolts.
 pub fn factor_chapter(records: &Records) -> String {
     let Some(fos) = &records.fos else { return String::new() };
@@ -191,7 +195,10 @@ pub fn factor_chapter(records: &Records) -> String {
         ("After the stage", stage_of_factor(json)),
         ("Greatest F at which the slope stands", plain(&bracket["stable"], "", Digits::Typed).into()),
         ("Least F at which it does not", plain(&bracket["unstable"], "", Digits::Typed).into()),
-        ("Factor by limit analysis", limit_factor(&json["bound"])),
+        ("Upper bound by limit analysis", limit_factor(&json["bound"])),
+        ("Its mechanism", way(&json["bound"])),
+        ("The same, joints that open bare", side(&json["bound"]["bare"])),
+        ("Estimate for joints that do not dilate by friction", side(&json["bound"]["estimate"])),
         ("Blocks that fail", plain(&failing["blocks"], "", Digits::Typed).into()),
         ("What they do", fate),
         ("Area that fails", plain(&failing["area"], "m²", Three).into()),
@@ -247,17 +254,22 @@ pub fn bound_chapter(records: &Records) -> String {
     let Some(record) = &records.bound else { return String::new() };
     let bound = &record.json["bound"];
     let rows = [
-        ("Factor by limit analysis", side(&bound["level_tops"])),
+        ("Upper bound by limit analysis", side(&bound["level_tops"])),
+        ("Its mechanism", way(bound)),
         ("After the stage", stage_of_factor(&record.json)),
-        ("Factor if joints dilate by their friction angle", side(&bound["associated"])),
-        ("Factor if every corner holds", side(&bound["catching"])),
+        ("Upper bound if joints dilate by their friction angle", side(&bound["associated"])),
+        ("The same, joints that open bare", side(&bound["bare"])),
+        ("Estimate for joints that do not dilate by friction", side(&bound["estimate"])),
+        ("Upper bound if every corner holds", side(&bound["catching"])),
         ("Lower bound", side(&bound["lower"])),
         ("Upper bound", side(&bound["upper"])),
         ("Blocks", plain(&bound["blocks"], "", Digits::Typed).into()),
         ("Blocks that can move", plain(&bound["free_blocks"], "", Digits::Typed).into()),
     ];
     let note = "Limit analysis looks for forces between the blocks that hold the slope, without following its \
-                motion. Its factor is a second opinion: that of strength reduction should not lie above it.";
+                motion. Its factor is a second opinion and an upper bound: the factor of safety should not lie above \
+                it, and may lie far below where blocks turn or cross each other. Joints that open bear no cohesion, \
+                and joints that dilate less bear less: the bound with bare joints and the estimate show how much.";
     chapter("Limit analysis", &(paragraph(note) + &facts(&rows)))
 }
 

@@ -53,7 +53,7 @@ pub fn trials_picture(title: &str, reduction: &Reduction) -> Picture {
 fn bounds(reduction: &Reduction) -> Vec<(&'static str, Factor)> {
     match (&reduction.bracket, &reduction.bound) {
         (Some(bracket), _) => vec![("lower bound", bracket.lower), ("upper bound", bracket.upper)],
-        (None, Ok(bound)) => vec![("limit analysis", bound.level_tops.factor)],
+        (None, Ok(bound)) => vec![("upper bound", bound.level_tops.factor)],
         (None, Err(_)) => Vec::new(),
     }
 }
@@ -71,6 +71,9 @@ fn caption(reduction: &Reduction) -> String {
     let bounds: String =
         bounds(reduction).into_iter().map(|(name, factor)| format!("; {name} {}", factor_text(factor))).collect();
     match (reduction.factor(), reduction.low, reduction.high) {
+        (_, Some(low), _) if reduction.at_most().is_some() => {
+            format!("factor of safety at most the upper bound: trials were stable up to {low:.4}{bounds}")
+        }
         (Some(factor), Some(low), Some(high)) => {
             format!("factor of safety F = {}: stable at {low:.4}, not at {high:.4}{bounds}", three_digits(factor))
         }

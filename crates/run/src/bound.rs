@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use enmm::engine_version;
+use enmm::model::Case;
 use enmm_io::CaseError;
 use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, write_atomic};
@@ -34,12 +35,24 @@ pub enum BoundFailure {
     Unsolved(BoundError),
 }
 
-/// Finds the bounds of a case file.
+/// Finds the bounds of a case file with what stands beside them.
 ///
 /// # Errors
 /// When the case cannot be built or treated, with file and line, or was not solved.
 pub fn bound(loaded: &LoadedCase) -> Result<Bound, BoundFailure> {
-    let mut bound = limit_analysis::bound(&loaded.case).map_err(|error| failure(loaded, error))?;
+    told(loaded, limit_analysis::bound)
+}
+
+/// The bounds alone, for samples.
+///
+/// # Errors
+/// As [`bound`].
+pub fn bounds(loaded: &LoadedCase) -> Result<Bound, BoundFailure> {
+    told(loaded, limit_analysis::bounds)
+}
+
+fn told(loaded: &LoadedCase, find: fn(&Case) -> Result<Bound, BoundError>) -> Result<Bound, BoundFailure> {
+    let mut bound = find(&loaded.case).map_err(|error| failure(loaded, error))?;
     bound.warnings.splice(0..0, loaded.warnings.iter().cloned());
     Ok(bound)
 }
@@ -111,11 +124,11 @@ pub fn bracket_record(bracket: &Bracket) -> Value {
 
 /// A bound as JSON: factors that are none are null, with a word on the way in which they are.
 pub fn bound_record(bound: &Bound) -> Value {
-    json!({
-        "associated": collapse(&bound.associated),
-        "level_tops": collapse(&bound.level_tops),
+    let mut record = json!({
         "level_tops_least": bound.least.value(),
-        "catching": collapse(&bound.catching),
+        "bare_share": bound.bare.as_ref().map(|bare| bare.share),
+        "bare_interfaces": bound.bare.as_ref().map(|bare| bare.interfaces),
+        "estimate": null,
         "blocks": bound.blocks[0],
         "free_blocks": bound.blocks[1],
         "interfaces": bound.interfaces,
@@ -124,7 +137,13 @@ pub fn bound_record(bound: &Bound) -> Value {
         "programs": bound.programs,
         "notes": bound.notes,
         "warnings": bound.warnings,
-    })
+    });
+    for row in bound.rows() {
+        record[row.key] = collapse(row.collapse);
+        record[row.key]["meaning"] = json!(row.meaning);
+        record[row.key]["way"] = json!(row.way());
+    }
+    record
 }
 
 /// A factor with a word on the way in which it is or is not one.

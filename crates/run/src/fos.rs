@@ -224,7 +224,8 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
         "tolerance": options.tolerance,
         "least_area": found.which.least(found.main()),
         "chips": found.chips().map(|chip| json!({
-            "factor_of_safety": chip.factor(),
+            "factor_of_safety": chip.factor().filter(|_| chip.at_most().is_none()),
+            "at_most": chip.at_most(),
             "area": chip.first_unstable().map(Trial::failing_area),
         })).collect::<Vec<_>>(),
         "wall_seconds": wall,
@@ -248,8 +249,9 @@ fn search_record(reduction: &Reduction) -> Value {
     let failing = reduction.first_unstable();
     let mut record = json!({
         "status": end_name(&reduction.end),
-        "factor_of_safety": reduction.factor(),
-        "at_least": reduction.at_least(),
+        "factor_of_safety": reduction.factor().filter(|_| reduction.at_most().is_none()),
+        "at_least": reduction.at_least().filter(|_| reduction.at_most().is_none()),
+        "at_most": reduction.at_most(),
         "bracket": { "stable": reduction.low, "unstable": reduction.high },
         "rest": { "strength_factor": HELD, "time": reduction.rest.0, "steps": reduction.rest.1 },
         "trials": reduction.trials.iter().map(trial_record).collect::<Vec<_>>(),

@@ -13,7 +13,7 @@ use enmm::model::Simulation;
 use enmm_io::LoadedCase;
 use enmm_io::files::temporary_beside;
 use enmm_stability::limit_analysis::continuum::{Bracket, Motion};
-use enmm_stability::limit_analysis::{self, Bound, Collapse};
+use enmm_stability::limit_analysis::{self, Bound, Way};
 use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};
 
 /// Motion of the fastest block of a mechanism in its page, over the greater side of the model.
@@ -71,13 +71,8 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
         })?;
     }
     film.note(0.0, &Note::Marked(mechanism(bound)))?;
-    let factors = [
-        ("associated", &bound.associated),
-        ("level tops pass", &bound.level_tops),
-        ("every corner catches", &bound.catching),
-    ];
-    let factor = |(name, collapse): (&str, &Collapse)| (name.to_owned(), collapse.factor.to_string());
-    film.note(0.0, &facts("Factor of safety by limit analysis", factors.map(factor)))?;
+    let factor = |row: limit_analysis::Row| (row.name.to_owned(), format!("{}: {}", row.collapse.factor, row.meaning));
+    film.note(0.0, &facts("Factor of safety by limit analysis", bound.rows().into_iter().map(factor)))?;
     let shown = [
         ("0", "the slope before it moves".to_owned()),
         (
@@ -148,7 +143,7 @@ fn note_warnings<'a>(film: &mut Film, warnings: impl Iterator<Item = &'a String>
     Ok(())
 }
 
-fn facts<const N: usize>(title: &str, rows: [(String, String); N]) -> Note {
+fn facts(title: &str, rows: impl IntoIterator<Item = (String, String)>) -> Note {
     let rows = rows.into_iter().map(|(name, value)| Fact { name, value });
     Note::Facts { title: title.to_owned(), rows: rows.collect() }
 }
@@ -158,17 +153,17 @@ fn trials(search: &Reduction, name: &str) -> TrialTable {
         (Some(low), Some(high)) => format!(" (stable at {low:.4}, not at {high:.4})"),
         _ => String::new(),
     };
-    let result = match (search.factor(), search.at_least()) {
-        (Some(factor), _) => format!("{factor:.4}{bracket}"),
-        (None, Some(least)) => format!("at least {least:.4}"),
-        (None, None) => format!("not found{bracket}"),
+    let result = match (search.at_most(), search.factor(), search.at_least()) {
+        (Some(most), ..) => format!("at most {most:.4}{bracket}"),
+        (None, Some(factor), _) => format!("{factor:.4}{bracket}"),
+        (None, None, Some(least)) => format!("at least {least:.4}"),
+        (None, None, None) => format!("not found{bracket}"),
     };
     let bound = match (&search.bracket, &search.bound) {
-        (Some(bracket), _) => format!("limit analysis: {} to {}", bracket.lower, bracket.upper),
-        (None, Ok(bound)) => format!(
-            "limit analysis: {} where level tops pass, {} associated",
-            bound.level_tops.factor, bound.associated.factor
-        ),
+        (Some(bracket), _) => {
+            format!("limit analysis: lower bound {}, upper bound {}", bracket.lower, bracket.upper)
+        }
+        (None, Ok(bound)) => format!("limit analysis: {}", bound.summary()),
         (None, Err(refused)) => format!("limit analysis: none, {refused}"),
     };
     let mechanism = if name.is_empty() { String::new() } else { format!("mechanism{name}: ") };
@@ -209,6 +204,7 @@ fn mechanism(bound: &Bound) -> Marked {
     let moving = &bound.level_tops.mechanism;
     let sum = |of: fn(&limit_analysis::MovingBlock) -> f64| moving.iter().map(of).sum::<f64>();
     let rows = [
+        ("Way", bound.level_tops.way.map_or_else(|| "none".to_owned(), Way::words)),
         ("Blocks", moving.len().to_string()),
         ("Area", format!("{:.4} m²", sum(|block| block.area))),
         ("Mass", format!("{:.4e} kg/m", sum(|block| block.mass))),

@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::common::parts::rock;
 use crate::common::random::Random;
 use enmm::model::Case;
-use enmm_stability::limit_analysis::Factor;
+use enmm_stability::limit_analysis::{Factor, bound};
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
@@ -264,6 +264,24 @@ fn a_grain_that_creeps_makes_no_verdict_alternate() {
     let factor = reduction.factor().expect("a factor");
     assert!(is_monotone(&reduction), "{:?}", reduction.trials);
     assert!((0.95..1.02).contains(&(factor / bound)), "{factor} of {bound}");
+}
+
+/// What stands beside the associated bound is never above it, over slopes of all kinds; nearly all have an estimate.
+#[test]
+fn estimates_and_bare_bounds_are_below_the_associated_bound() {
+    let mut without = 0;
+    let seeds = by_extent([0..20, 0..20, 0..66]);
+    for seed in seeds.clone() {
+        let (kind, slope, friction_deg) = slope(seed);
+        let found = bound(&slope.case(friction_deg, None)).unwrap_or_else(|e| panic!("slope {seed}, {kind}: {e}"));
+        let associated = found.associated.factor.value();
+        let [bare, estimate] = [found.bare.as_ref().map(|bare| &bare.collapse), found.estimate.as_ref()]
+            .map(|collapse| collapse.map_or(0.0, |collapse| collapse.factor.value()));
+        println!("{seed:>3} {kind:<13} associated {associated:.4}, bare {bare:.4}, estimate {estimate:.4}");
+        assert!(bare <= associated && estimate <= bare, "slope {seed}: {estimate} {bare} {associated}");
+        without += usize::from(found.estimate.is_none());
+    }
+    assert!(without * 10 <= seeds.count(), "{without} without an estimate");
 }
 
 /// A slope of each of six kinds in turn; the quick form has the first, the full one three kinds.

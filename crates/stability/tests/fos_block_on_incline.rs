@@ -72,10 +72,12 @@ fn the_strength_of_the_case_changes_no_limit() {
 #[test]
 fn a_factor_above_limit_analysis_is_in_doubt() {
     let mut reduction = reduce(&case(40.0, 0.0, ""), 1);
-    assert_eq!(reduction.doubt(), None);
+    assert_eq!((reduction.doubt(), reduction.at_most()), (None, None));
     reduction.low = reduction.low.map(|low| 1.1 * low);
     let doubt = reduction.doubt().expect("a doubt");
     assert!(doubt.contains("above what limit analysis of rigid blocks allows"), "{doubt}");
+    let exact = 40f64.to_radians().tan() / 30f64.to_radians().tan();
+    assert!((reduction.at_most().expect("a bound") / exact - 1.0).abs() < 3e-4, "{:?}", reduction.at_most());
 }
 
 /// The friction of the first test, with a wall 20 mm below the block: it starts to move as it does without, whether it

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use crate::common::simulation;
+use enmm::model::Mechanism;
 use enmm_io::{load_case, parse_case};
 use enmm_stability::limit_analysis::{Bound, BoundError, Factor, bound};
 
@@ -110,6 +111,130 @@ fn tensile_strength_holds_a_block_below_a_roof() {
         );
         near(of_text(&text).expect("a bound").associated.factor, 5e4 * 2.0 / (1.6 * 2500.0 * 9.81));
     }
+}
+
+/// Columns (width and height in m, from the toe up, each on a step .5 m above the last) under a gravity that is turned
+/// by 20°; their base has 60° of friction, their sides 40° and `side` more.
+fn columns(sizes: &[[f64; 2]], side: &str) -> String {
+    let right: f64 = sizes.iter().map(|size| size[0]).sum();
+    let mut outline = vec![[-6.0, -3.0], [right + 6.0, -3.0], [right + 6.0, 0.0]];
+    let (mut x, mut joints) = (right, String::new());
+    for (k, [width, height]) in sizes.iter().enumerate() {
+        let foot = 0.5 * k as f64;
+        if k == 0 {
+            outline.push([x, foot]);
+        }
+        outline.extend([[x, foot + height], [x - width, foot + height]]);
+        let [base, behind] = [[[x - width, foot], [x, foot]], [[x - width, foot], [x - width, foot + height]]];
+        joints += &format!("[[joint]]\npoints = {base:?}\nlaw = \"base\"\n");
+        if k + 1 < sizes.len() {
+            joints += &format!("[[joint]]\npoints = {behind:?}\nlaw = \"side\"\n");
+        }
+        x -= width;
+    }
+    let top = 0.5 * (sizes.len() - 1) as f64;
+    outline.extend([[0.0, top], [-6.0, top]]);
+    let (sine, cosine) = 20f64.to_radians().sin_cos();
+    format!(
+        "title = \"columns\"\n[domain]\noutline = {outline:?}\njoint_law = \"base\"\n[mesh]\nsize = 1.0\n\
+         origin = [0.13, 0.07]\n[gravity]\nx = {:?}\ny = {:?}\n[rock.rock]\ndensity = 2500.0\nyoung = 1e10\n\
+         poisson = 0.25\n[joint_law.base]\nfriction_deg = 60.0\n[joint_law.side]\nfriction_deg = 40.0\n{side}\n\
+         {joints}[[fix]]\nedge = [[-6.0, -3.0], [{:?}, -3.0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\n\
+         duration = 60\n",
+        9.81 * sine,
+        -9.81 * cosine,
+        right + 6.0
+    )
+}
+
+/// Factor at which such columns topple: each turns about its lower corner and touches the next at that one's head,
+/// where friction is fully mobilized; bases do not slip.
+fn toppling(sizes: &[[f64; 2]]) -> f64 {
+    let (sine, cosine) = 20f64.to_radians().sin_cos();
+    let over = |factor: f64| {
+        let (mut push, mut moment) = (0.0, 0.0);
+        for (k, [width, height]) in sizes.iter().enumerate().rev() {
+            let weight = 2500.0 * 9.81 * width * height;
+            let drag = push * 40f64.to_radians().tan() / factor;
+            moment = 0.5 * weight * (height * sine - width * cosine) + push * height - drag * width;
+            push = if k > 0 { (moment / (sizes[k - 1][1] - 0.5)).max(0.0) } else { 0.0 };
+        }
+        moment
+    };
+    let halved = |[low, high]: [f64; 2]| {
+        let middle = 0.5 * (low + high);
+        if over(middle) > 0.0 { [low, middle] } else { [middle, high] }
+    };
+    (0..60).fold([0.1, 10.0], |bracket, _| halved(bracket))[0]
+}
+
+const TWO: [[f64; 2]; 2] = [[2.4, 4.0], [2.0, 7.5]];
+const THREE: [[f64; 2]; 3] = [[3.0, 4.5], [2.0, 6.5], [2.0, 8.5]];
+
+/// Estimates agree with their friction within 10⁻³, and so does the power that gives F.
+#[test]
+fn columns_without_dilation_topple_at_their_closed_form() {
+    assert!((toppling(&TWO) - 1.8273).abs() < 1e-4 && (toppling(&THREE) - 2.0724).abs() < 1e-4);
+    for (sizes, side) in [(&TWO[..], ""), (&THREE, ""), (&TWO, "cohesion = 2e3")] {
+        let found = of_text(&columns(sizes, side)).expect("a bound");
+        let estimate = found.estimate.as_ref().expect("an estimate");
+        let ratio = estimate.factor.value() / toppling(sizes);
+        assert!((ratio - 1.0).abs() < 2e-3, "{ratio} {side} {found:?}");
+        assert!(found.associated.factor.value() > 1.2 * estimate.factor.value(), "{found:?}");
+        let way = estimate.way.expect("a way");
+        assert_eq!((way.mechanism, way.is_one), (Mechanism::Topples, false));
+        assert!(way.words().contains("1.5 times too high"), "{}", way.words());
+    }
+}
+
+/// The sides of columns that turn open, so that their cohesion adds nothing.
+#[test]
+fn cohesion_of_sides_that_open_is_told_and_left_out() {
+    let [plain, sticky] = ["", "cohesion = 2e3"].map(|side| of_text(&columns(&TWO, side)).expect("a bound"));
+    let bare = sticky.bare.as_ref().expect("a bare bound");
+    near(bare.collapse.factor, plain.associated.factor.value());
+    assert!(sticky.associated.factor.value() > 1.04 * bare.collapse.factor.value() && bare.share > 0.99, "{sticky:?}");
+    assert!(sticky.warnings.iter().any(|warning| warning.contains("interfaces that open")), "{:?}", sticky.warnings);
+    assert!(plain.warnings.is_empty() && plain.bare.is_some_and(|bare| bare.interfaces == 0));
+}
+
+#[test]
+fn joints_that_dilate_by_their_friction_angle_have_the_associated_factor() {
+    let dilating = columns(&TWO, "dilation_deg = 40.0\ndilation_slip = 1e3")
+        .replace("friction_deg = 60.0", "friction_deg = 60.0\ndilation_deg = 60.0\ndilation_slip = 1e3");
+    let found = of_text(&dilating).expect("a bound");
+    let ratio = found.estimate.expect("an estimate").factor.value() / found.associated.factor.value();
+    assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
+}
+
+/// A wedge on a plane of 30° whose back, a joint of 60°, opens as it leaves: with tan φ = .75 on the plane the factor
+/// is .75/tan 30°, whatever the cohesion of the back, which slips as well where the plane dilates.
+#[test]
+fn a_wedge_that_slides_is_left_by_its_back_and_needs_no_dilation() {
+    let (dip, foot) = (30f64.to_radians().tan(), [3.0, 1.0]);
+    let on = |x: f64| [x, foot[1] + (x - foot[0]) * dip];
+    let text = |cohesion: f64| {
+        format!(
+            "title = \"wedge\"\n[domain]\noutline = [[0, -4], [20, -4], [20, 8], [10, 8], [2, 0], [0, 0]]\n[mesh]\n\
+             size = 1.5\norigin = [0.31, 0.17]\n[[joint]]\npoints = {:?}\nlaw = \"plane\"\n[[joint]]\npoints = {:?}\n\
+             law = \"back\"\n[rock.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n[joint_law.plane]\n\
+             friction_deg = {:?}\n[joint_law.back]\nfriction_deg = 35.0\ncohesion = {cohesion:e}\n[[fix]]\nedge = \
+             [[0, -4], [20, -4]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\n",
+            [on(2.0), on(11.0)],
+            [on(11.0), [13.0, on(11.0)[1] + 2.0 * 60f64.to_radians().tan()]],
+            0.75f64.atan().to_degrees()
+        )
+    };
+    let [dry, sticky] = [0.0, 2e4].map(|cohesion| of_text(&text(cohesion)).expect("a bound"));
+    for found in [&dry, &sticky] {
+        let exact = 0.75 / dip;
+        near(found.bare.as_ref().expect("a bare bound").collapse.factor, exact);
+        near(found.estimate.as_ref().expect("an estimate").factor, exact);
+        let way = found.level_tops.way.expect("a way");
+        assert_eq!((way.mechanism, way.is_one), (Mechanism::Slides, true));
+    }
+    near(dry.associated.factor, 0.75 / dip);
+    assert!(sticky.associated.factor.value() > 1.03 * dry.associated.factor.value(), "{sticky:?}");
 }
 
 /// A change of law in a later static stage counts; stages from the first dynamic one on do not, and are named.

@@ -162,7 +162,7 @@ class Fos(_Directory):
 
     @property
     def factor(self) -> float | None:
-        """The factor of safety; None when the search ended without one, see `status`."""
+        """The factor of safety; None when the search ended without one, see `status`, or `at_most` holds."""
         factor = self.record["factor_of_safety"]
         return None if factor is None else float(factor)
 
@@ -176,6 +176,12 @@ class Fos(_Directory):
         """The greatest factor at which the slope is stable, when it is at all that were tried."""
         least = self.record["at_least"]
         return None if least is None else float(least)
+
+    @property
+    def at_most(self) -> float | None:
+        """The upper bound of limit analysis, when a trial above it was stable: the factor is at most that."""
+        most = self.record.get("at_most")
+        return None if most is None else float(most)
 
     @property
     def bracket(self) -> tuple[float | None, float | None]:
@@ -226,7 +232,7 @@ class Fos(_Directory):
 
     def _repr_html_(self) -> str:
         low, high = self.bracket
-        named = [("stable at", low), ("not stable at", high), ("at least", self.at_least)]
+        named = [("stable at", low), ("not stable at", high), ("at least", self.at_least), ("at most", self.at_most)]
         rows = [("factor of safety", "none" if self.factor is None else f"{self.factor:.4f}"), ("status", self.status)]
         rows += [(name, f"{value:.4f}") for name, value in named if value is not None]
         rows += [("limit analysis", _of_bound(self.bound))]
@@ -239,10 +245,14 @@ class Fos(_Directory):
 
     def __float__(self) -> float:
         if self.factor is None:
+            if self.at_most is not None:
+                raise ValueError(f"the factor is at most {self.at_most:.4f}, an upper bound: {self.doubt}")
             raise ValueError(f"the search ended {self.status}: there is no factor; {self.record['remedy']}")
         return self.factor
 
     def __repr__(self) -> str:
+        if self.at_most is not None:
+            return f"<enmm.Fos: at most {self.at_most:.4f}>"
         if self.factor is None:
             return f"<enmm.Fos: {self.status}{'' if self.at_least is None else f', at least {self.at_least:.4f}'}>"
         low, high = self.bracket
@@ -253,7 +263,8 @@ def _of_bound(bound: dict[str, Any]) -> str:
     """The factor of limit analysis, or the reason why there is none."""
     if "refused" in bound:
         return f"none: {bound['refused']}"
-    return " to ".join(_html.words(bound[name]) for name in ("level_tops", "lower", "upper") if name in bound)
+    named = {"level_tops": "upper bound", "lower": "lower bound", "upper": "upper bound", "estimate": "estimate"}
+    return ", ".join(f"{word} {_html.words(bound[name])}" for name, word in named.items() if bound.get(name))
 
 
 def run(
@@ -360,8 +371,9 @@ def _trial(line: str) -> dict[str, Any] | None:
 def bound(case: CaseLike, output: str | os.PathLike[str] | None = None, *, stage: str | None = None) -> dict[str, Any]:
     """Bounds of the factor of safety by limit analysis, the object of `enmm bound --json`.
 
-    `associated`, `level_tops` and `catching` of rigid blocks, and `lower` and `upper` of rock that yields, have
-    `factor` and `end` each, and all but `lower` a `mechanism`. `stage` is the static stage after which the slope is
+    `associated`, `level_tops` and `catching` of rigid blocks are upper bounds, and so is `bare`, the associated one
+    without the cohesion of joints that open; `estimate` is none, and None where forces do not agree. Rock that yields
+    has `lower` and `upper`. Each has `factor` and `end`, and all but `lower` a `mechanism`. `stage` is the static stage after which the slope is
     looked at. `output` is a directory for `report.html`, which shows the mechanism; without it no page is left. Raises
     CaseError for a case that limit analysis cannot treat.
     """

@@ -11,6 +11,7 @@ use enmm::model::case::Invalid;
 use enmm_io::LoadedCase;
 use enmm_run::{NetOptions, apparent, stereonet, write_model_page};
 use enmm_stability::kinematics::Plane;
+use enmm_stability::limit_analysis::{Bound, Way};
 
 use super::shown::Shown;
 use crate::case::CaseArguments;
@@ -120,6 +121,12 @@ impl BoundDesk {
     }
 }
 
+/// The factors of a bound, how their mechanism moves, and what to know of them.
+fn bound_text(bound: &Bound) -> String {
+    let way = bound.level_tops.way.map(Way::words);
+    std::iter::once(bound.summary()).chain(way).collect::<Vec<_>>().join("; ")
+}
+
 fn answer(questions: &Receiver<(u64, LoadedCase)>, shown: &Shown) {
     while let Ok(first) = questions.recv() {
         // Models that others have followed need no bound.
@@ -128,7 +135,7 @@ fn answer(questions: &Receiver<(u64, LoadedCase)>, shown: &Shown) {
             "rock yields: see `enmm bound`".to_owned()
         } else {
             match enmm_run::bound(&loaded) {
-                Ok(bound) => format!("{} where level tops pass", bound.level_tops.factor),
+                Ok(bound) => bound_text(&bound),
                 Err(error) => format!("none: {error}"),
             }
         };

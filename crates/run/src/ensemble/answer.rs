@@ -48,7 +48,7 @@ pub fn answer(
 type Values = Result<Vec<Value>, String>;
 
 fn bound(sample: &LoadedCase, of: fn(&enmm_stability::limit_analysis::Bound) -> &Collapse) -> Values {
-    let bound = crate::bound(sample).map_err(|error| error.to_string())?;
+    let bound = crate::bound::bounds(sample).map_err(|error| error.to_string())?;
     let (limit, end) = match of(&bound).factor {
         Factor::Found(factor) => (factor, "found"),
         Factor::AtLeast(least) => (least, "at_least"),
@@ -69,11 +69,12 @@ fn factor(
     }
 }
 
-/// Factor and what fails. A factor beyond the search is its limit, with the status that says so.
+/// Factor and what fails. A factor beyond the search is its limit, with the status that says so, and one above an upper
+/// bound is that bound.
 fn values(found: &Found) -> Values {
     let main = found.main();
     let status = end_name(&main.end);
-    let factor = main.factor().or(main.at_least()).or(main.high);
+    let factor = main.at_most().or(main.factor()).or(main.at_least()).or(main.high);
     let Some(factor) = factor.filter(|_| !matches!(main.end, End::Failed(_) | End::Interrupted)) else {
         let remedy = remedy(main).unwrap_or_default();
         return Err(format!("the search for the factor of safety ended {status}: {remedy}"));

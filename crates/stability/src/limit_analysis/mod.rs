@@ -4,17 +4,21 @@
 mod contact;
 pub mod continuum;
 mod corner;
+mod estimate;
 mod interfaces;
 mod model;
+mod opened;
 mod program;
 mod refusal;
 mod search;
 mod solver;
+mod way;
 
 use enmm::geometry::{Point, Vector};
-use enmm::model::tables::BlockId;
+use enmm::model::tables::{BlockId, Outlines};
 
 use contact::Contact;
+use corner::Corner;
 use enmm::model::Simulation;
 use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
@@ -22,9 +26,12 @@ use model::{Body, Strengths};
 use program::{Program, Unsolved};
 pub use refusal::{staged, staged_rock};
 use search::{Limit, Search};
+pub use way::Way;
 
 /// Range of factors that is searched; outside it the result is `AtMost` or `AtLeast`.
 pub const RANGE: [f64; 2] = [1e-3, 1e3];
+/// Difference of two factors, relative to them, that matters: the width to which strength reduction finds one.
+const TOLERANCE: f64 = 5e-3;
 /// Speed, relative to that of the fastest block, from which a block is part of a mechanism.
 const MOVES: f64 = 1e-2;
 
@@ -93,8 +100,48 @@ pub struct Collapse {
     pub factor: Factor,
     /// Blocks that move, fastest first; none when there is equilibrium throughout.
     pub mechanism: Vec<MovingBlock>,
+    /// The way in which they move.
+    pub way: Option<Way>,
 }
 
+/// A factor of a bound with what it says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row<'a> {
+    /// Its key in records.
+    pub key: &'static str,
+    /// Its name where it is shown.
+    pub name: &'static str,
+    /// The factor and its mechanism.
+    pub collapse: &'a Collapse,
+    /// What it says: first whether it is an upper bound or an estimate.
+    pub meaning: String,
+}
+
+fn row<'a>(key: &'static str, name: &'static str, collapse: &'a Collapse, meaning: &str) -> Row<'a> {
+    Row { key, name, collapse, meaning: meaning.to_owned() }
+}
+
+impl Row<'_> {
+    /// The way of its mechanism, with what that says of a bound.
+    pub fn way(&self) -> Option<String> {
+        let is_bound = self.key != ESTIMATE;
+        self.collapse.way.map(|way| if is_bound { way.words() } else { way.name().to_owned() })
+    }
+}
+
+/// A bound without cohesion and tensile strength of interfaces that its mechanism opens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bare {
+    /// The factor and its mechanism.
+    pub collapse: Collapse,
+    /// Share that these interfaces have of what cohesion and tensile strength do in the associated mechanism.
+    pub share: f64,
+    /// How many they are.
+    pub interfaces: usize,
+}
+
+/// Key of the factor that is no bound.
+const ESTIMATE: &str = "estimate";
 /// How joints that soften count, beside each bound of a case that has them.
 pub const DUCTILE: &str = "a bridge counts with its strength: the bound holds for a ductile bridge";
 
@@ -110,6 +157,11 @@ pub struct Bound {
     pub least: Factor,
     /// Each of them stays outside both facets: bound when corners catch at every crossing.
     pub catching: Collapse,
+    /// The associated bound without cohesion and tensile strength of interfaces that open; none where it was not asked.
+    pub bare: Option<Bare>,
+    /// Estimate, and no bound, of the factor of joints that dilate as the case says, those that open bare; none where
+    /// forces do not agree with the friction that they give.
+    pub estimate: Option<Collapse>,
     /// Blocks that are there, and those that can move.
     pub blocks: [usize; 2],
     /// Straight interfaces.
@@ -174,30 +226,99 @@ impl From<Invalid> for BoundError {
     }
 }
 
+impl Bare {
+    fn meaning(&self) -> String {
+        match self.interfaces {
+            0 => "the same: no interface with cohesion opens".to_owned(),
+            count => format!(
+                "upper bound without cohesion and tensile strength of {count} interfaces that open, {:.0} % of all",
+                100.0 * self.share
+            ),
+        }
+    }
+}
+
+impl Bound {
+    /// All factors with what they say, bounds first.
+    pub fn rows(&self) -> Vec<Row<'_>> {
+        let level = if self.least == self.level_tops.factor {
+            "upper bound where corners pass over level tops".to_owned()
+        } else {
+            format!(
+                "upper bound of a factor of at least {:.4}: some choices at crossings were not tried",
+                self.least.value()
+            )
+        };
+        let mut rows = vec![
+            row(
+                "associated",
+                "associated",
+                &self.associated,
+                "upper bound: joints dilate by their friction (normality)",
+            ),
+            row("level_tops", "level tops pass", &self.level_tops, &level),
+            row("catching", "every corner catches", &self.catching, "upper bound if no crossing lets a block pass"),
+        ];
+        if let Some(bare) = &self.bare {
+            rows.push(row("bare", "open joints bare", &bare.collapse, &bare.meaning()));
+        }
+        let estimate = "estimate, no bound: joints dilate as the case says, open ones are bare";
+        rows.extend(self.estimate.as_ref().map(|collapse| row(ESTIMATE, "without normality", collapse, estimate)));
+        rows
+    }
+
+    /// The factors in one line.
+    pub fn summary(&self) -> String {
+        let (level, associated) = (self.level_tops.factor, self.associated.factor);
+        let bare = self.bare.as_ref().filter(|bare| bare.interfaces > 0);
+        let bare = bare.map(|bare| format!(", {} if joints that open are bare", bare.collapse.factor));
+        let estimate = match &self.estimate {
+            Some(collapse) => format!("estimate without normality {}", collapse.factor),
+            None => "no estimate without normality".to_owned(),
+        };
+        let bare = bare.unwrap_or_default();
+        format!("upper bound {level} where level tops pass, {associated} associated{bare}; {estimate}")
+    }
+
+    /// What bounds count that is not there once joints open.
+    fn warning(&self) -> Option<String> {
+        let bare = self.bare.as_ref()?;
+        let (with, without) = (self.associated.factor.value(), bare.collapse.factor.value());
+        (without < with * (1.0 - TOLERANCE)).then(|| {
+            format!(
+                "interfaces that open in the mechanism have {:.0} % of the work of cohesion and tensile strength: \
+                 without these the bound is {}, {:.1} % lower",
+                100.0 * bare.share,
+                bare.collapse.factor,
+                100.0 * (1.0 - without / with)
+            )
+        })
+    }
+}
+
 /// Finds the bounds of a case in the stage in which strength reduction makes its trials: after the static stages with
-/// which it begins.
+/// which it begins; beside them, what the bound is without the cohesion of joints that open, and an estimate for joints
+/// that dilate less.
 ///
 /// # Errors
 /// A case that cannot be built, that holds what cannot be treated, or whose program is not solved.
 pub fn bound(case: &Case) -> Result<Bound, BoundError> {
+    find(case, true)
+}
+
+/// The bounds alone, in a part of the time.
+///
+/// # Errors
+/// As [`bound`].
+pub fn bounds(case: &Case) -> Result<Bound, BoundError> {
+    find(case, false)
+}
+
+fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
     let (simulation, warnings) = refusal::staged(case)?;
-    let bodies = model::bodies(&simulation);
-    let free = bodies.iter().filter(|body| body.is_free()).count();
-    if free == 0 {
-        let message = "every block is held, so that none can fail: free a block, or cut the rock by joints".to_owned();
-        return Err(Invalid { key: "fix".to_owned(), message }.into());
-    }
     let outlines = outlines(simulation.case())?;
-    let element_block = &simulation.model().covers.element_block;
-    let strengths = Strengths::new(&simulation, &bodies);
-    let tolerance = 2.0 * simulation.built().noding.tolerance;
-    let mut contacts = interfaces::interfaces(&outlines, element_block, &strengths, tolerance);
-    let interfaces = contacts.len();
-    let (points, corners) = corner::corners(&outlines, element_block, &strengths);
-    let blocks = [bodies.iter().filter(|body| !body.is_gone).count(), free];
-    let counts = (interfaces, points.len(), corners.len());
-    contacts.extend(points);
-    let program = Program { contacts, bars: model::bars(&simulation), bodies };
+    let Blocks { program, corners, interfaces, points } = Blocks::new(&simulation, &outlines)?;
+    let free = program.bodies.iter().filter(|body| body.is_free()).count();
     let mut search = Search { program: &program, programs: 0 };
     let unsolved = |error: Unsolved| BoundError::Unsolved { blocks: free, status: format!("{:?}", error.status) };
     let associated = search.limit_near(&[], None).map_err(unsolved)?;
@@ -207,32 +328,69 @@ pub fn bound(case: &Case) -> Result<Bound, BoundError> {
         true => associated.clone(),
         false => search.limit_near(&both, None).map_err(unsolved)?,
     };
-    let collapse = |limit: &Limit| collapse(&simulation, &program.bodies, limit);
+    let opened = beside.then(|| opened::opened(&mut search, &associated)).transpose().map_err(unsolved)?;
+    let (estimated, rounds) = opened.as_ref().map_or((None, 0), estimate::estimate);
+    let boxes = way::boxes(&outlines, &simulation.model().covers.element_block, program.bodies.len());
+    let collapse = |limit: &Limit| collapse(&simulation, &program, &boxes, limit);
     let built = simulation.built();
     let softens = built.traces.iter().any(|(_, law)| simulation.model().laws[*law].softening.is_some());
     let ductile = softens.then(|| DUCTILE.to_owned());
-    Ok(Bound {
+    let mut bound = Bound {
         associated: collapse(&associated),
         level_tops: collapse(&choice.limit),
         least: choice.least,
         catching: collapse(&catching),
-        blocks,
-        interfaces: counts.0,
-        points: counts.1,
-        corners: counts.2,
-        programs: search.programs,
+        bare: opened.map(|o| Bare { collapse: collapse(&o.limit), share: o.share, interfaces: o.contacts }),
+        estimate: estimated.as_ref().map(collapse),
+        blocks: [program.bodies.iter().filter(|body| !body.is_gone).count(), free],
+        interfaces,
+        points,
+        corners: corners.len(),
+        programs: search.programs + 2 * rounds,
         softens,
         notes: built.notes.iter().cloned().chain(ductile).collect(),
         warnings,
-    })
+    };
+    bound.warnings.extend(bound.warning());
+    Ok(bound)
+}
+
+/// The blocks of a model and where they can press on each other.
+struct Blocks {
+    program: Program,
+    /// Corners that face each other at crossings.
+    corners: Vec<Corner>,
+    /// Straight interfaces, and corners that meet a face in a point.
+    interfaces: usize,
+    points: usize,
+}
+
+impl Blocks {
+    fn new(simulation: &Simulation, outlines: &Outlines) -> Result<Self, Invalid> {
+        let bodies = model::bodies(simulation);
+        if !bodies.iter().any(Body::is_free) {
+            let message = "every block is held, so that none can fail: free a block, or cut the rock by joints";
+            return Err(Invalid { key: "fix".to_owned(), message: message.to_owned() });
+        }
+        let element_block = &simulation.model().covers.element_block;
+        let strengths = Strengths::new(simulation, &bodies);
+        let tolerance = 2.0 * simulation.built().noding.tolerance;
+        let mut contacts = interfaces::interfaces(outlines, element_block, &strengths, tolerance);
+        let interfaces = contacts.len();
+        let (points, corners) = corner::corners(outlines, element_block, &strengths);
+        let count = points.len();
+        contacts.extend(points);
+        let program = Program { contacts, bars: model::bars(simulation), bodies };
+        Ok(Self { program, corners, interfaces, points: count })
+    }
 }
 
 /// A limit as users see it: motions relative to the fastest block.
-fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse {
-    let model = simulation.model();
+fn collapse(simulation: &Simulation, program: &Program, boxes: &[[Point; 2]], limit: &Limit) -> Collapse {
+    let (model, bodies) = (simulation.model(), &program.bodies);
     let motions = limit.mechanism.as_ref().map_or(&[][..], |solution| &solution.motions);
+    let fastest = program.fastest(motions);
     let speed = |b: BlockId| libm::hypot(motions[b].0.norm(), motions[b].1 * bodies[b].radius);
-    let fastest = BlockId::all(motions.len()).map(speed).fold(0.0, f64::max);
     let moving = BlockId::all(motions.len()).filter(|&b| fastest > 0.0 && speed(b) >= MOVES * fastest);
     let mut mechanism: Vec<MovingBlock> = moving
         .map(|b| MovingBlock {
@@ -246,5 +404,8 @@ fn collapse(simulation: &Simulation, bodies: &[Body], limit: &Limit) -> Collapse
         })
         .collect();
     mechanism.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
-    Collapse { factor: limit.factor(), mechanism }
+    let normals = limit.mechanism.as_ref().map_or(&[][..], |solution| &solution.normals);
+    let borne = way::borne(program, normals);
+    let way = Way::of(&mechanism, boxes, &borne, simulation.acceleration());
+    Collapse { factor: limit.factor(), mechanism, way }
 }

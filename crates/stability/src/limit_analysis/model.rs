@@ -165,17 +165,36 @@ impl<'a> Strengths<'a> {
 
     /// An interface from one end to the other, the first block on its left.
     pub fn face(&self, blocks: [BlockId; 2], ends: [Point; 2], law: LawId) -> Contact {
-        let law = &self.simulation.state().laws[law];
         let along = ends[1] - ends[0];
-        let length = along.norm();
-        let normal = outward(along);
-        let (cohesion, tension) = (law.cohesion * length, law.tension * length);
-        Contact { blocks, ends, normal, friction: law.friction, cohesion, tension }
+        self.contact(law, blocks, ends, outward(along), [along.norm(); 2])
     }
 
-    /// A corner against a face that some trace has made: it has friction, and no length for cohesion.
+    /// A corner against a face that some trace has made: it has friction, and no length for cohesion. Its springs are
+    /// those of a face as long as the lesser radius of both blocks.
     pub fn point(&self, blocks: [BlockId; 2], at: Point, normal: Vector, trace: Option<TraceId>) -> Contact {
-        let law = &self.simulation.state().laws[self.law(trace)];
-        Contact { blocks, ends: [at; 2], normal, friction: law.friction, cohesion: 0.0, tension: 0.0 }
+        let radius = self.bodies[blocks[0]].radius.min(self.bodies[blocks[1]].radius);
+        self.contact(self.law(trace), blocks, [at; 2], normal, [0.0, radius])
+    }
+
+    /// A contact with the strength of one length (m) and the springs of another.
+    fn contact(
+        &self,
+        law: LawId,
+        blocks: [BlockId; 2],
+        ends: [Point; 2],
+        normal: Vector,
+        [strong, stiff]: [f64; 2],
+    ) -> Contact {
+        let law = &self.simulation.state().laws[law];
+        Contact {
+            blocks,
+            ends,
+            normal,
+            friction: law.friction,
+            cohesion: law.cohesion * strong,
+            tension: law.tension * strong,
+            dilation: law.dilation,
+            stiffness: [law.normal_stiffness * stiff, law.shear_stiffness * stiff],
+        }
     }
 }

@@ -14,7 +14,7 @@ const WIDTH: f64 = 2e-5;
 /// Difference of two factors, relative to them, that counts as none.
 const SAME: f64 = 1e-4;
 /// Speed of a corner into another, relative to the fastest block, that counts as none.
-const STILL: f64 = 1e-5;
+pub const STILL: f64 = 1e-5;
 /// Ratio of strengths of the first trials, and of those of limits that lie close to a known one.
 const STRIDES: [f64; 2] = [4.0, 1.02];
 /// Relative distance over which the slope of the unbalanced share holds.
@@ -179,14 +179,9 @@ impl Search<'_> {
     /// Corners of which the mechanism enters both facets, the deepest first, with the facet that is entered less.
     fn entered(&self, corners: &[Corner], limit: &Limit, chosen: &[(usize, usize)]) -> Vec<(usize, usize)> {
         let (Some(solution), Some(strength)) = (&limit.mechanism, limit.low) else { return Vec::new() };
-        let bodies = &self.program.bodies;
-        let speed = |(body, (velocity, spin)): (&super::model::Body, &super::program::Motion)| {
-            libm::hypot(velocity.norm(), spin * body.radius)
-        };
-        let fastest = bodies.iter().zip(&solution.motions).map(speed).fold(0.0, f64::max);
+        let fastest = self.program.fastest(&solution.motions);
         let into = |contact: &Contact| {
-            let parting = self.program.parting(&solution.motions, contact);
-            strength * contact.friction * parting.dot(&contact.tangent()).abs() - parting.dot(&contact.normal)
+            -contact.opening(&self.program.partings(&solution.motions, contact), strength * contact.friction).1[0]
         };
         let mut entered = Vec::new();
         for (k, corner) in corners.iter().enumerate().filter(|(k, _)| chosen.iter().all(|(c, _)| c != k)) {

@@ -1,4 +1,4 @@
-//! The solver of linear and conic programs, which minimise unknown 0.
+//! The solver of linear, conic and quadratic programs.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -28,10 +28,36 @@ impl Accuracy {
     ) -> Result<DefaultSolution<f64>, SolverStatus> {
         let mut cost = vec![0.0; a.n];
         cost[0] = 1.0;
-        let none = CscMatrix::zeros((a.n, a.n));
+        self.solve(&CscMatrix::zeros((a.n, a.n)), &cost, a, right, cones)
+    }
+
+    /// Least of half the sum of the squares of the unknowns, each times its factor, in the same cones.
+    ///
+    /// # Errors
+    /// As [`Accuracy::least`].
+    pub fn least_squares(
+        &self,
+        factors: Vec<f64>,
+        a: &CscMatrix<f64>,
+        right: &[f64],
+        cones: &[SupportedConeT<f64>],
+    ) -> Result<DefaultSolution<f64>, SolverStatus> {
+        let places: Vec<usize> = (0..a.n).collect();
+        let squares = CscMatrix::new_from_triplets(a.n, a.n, places.clone(), places, factors);
+        self.solve(&squares, &vec![0.0; a.n], a, right, cones)
+    }
+
+    fn solve(
+        &self,
+        squares: &CscMatrix<f64>,
+        cost: &[f64],
+        a: &CscMatrix<f64>,
+        right: &[f64],
+        cones: &[SupportedConeT<f64>],
+    ) -> Result<DefaultSolution<f64>, SolverStatus> {
         let mut status = SolverStatus::Unsolved;
         for &regularization in self.regularizations {
-            let solver = DefaultSolver::new(&none, &cost, a, right, cones, self.settings(regularization));
+            let solver = DefaultSolver::new(squares, cost, a, right, cones, self.settings(regularization));
             let mut solver = solver.map_err(|_| status)?;
             solver.solve();
             status = solver.solution.status;

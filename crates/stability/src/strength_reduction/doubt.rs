@@ -3,6 +3,7 @@
 use super::corners::{CarryingCorner, CornersHold};
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
 use crate::limit_analysis::Bound;
+use crate::limit_analysis::continuum::Bracket;
 use enmm::model::case::{Case, Rock};
 
 /// Part of the largest term of the ledger that may stay unexplained.
@@ -21,42 +22,48 @@ impl Reduction {
         moving > few
     }
 
+    /// The same for a bracket.
+    fn moves_rock(&self, bracket: &Bracket) -> bool {
+        bracket.moving().map(|motion| motion.mass).sum::<f64>() > self.simulation.mass_of_few()
+    }
+
+    /// The upper bound of limit analysis, when a trial above it was stable: the factor of safety is at most that,
+    /// whatever the trials say.
+    pub fn at_most(&self) -> Option<f64> {
+        let limit = match (&self.bracket, &self.bound) {
+            (Some(bracket), _) if self.moves_rock(bracket) => bracket.upper.value(),
+            (None, Ok(bound)) if self.moves_slope(bound) => bound.level_tops.factor.value(),
+            _ => return None,
+        };
+        self.low.filter(|stable| *stable > ABOVE * limit).map(|_| limit)
+    }
+
     /// Why the factor is in doubt: it is above the bound of limit analysis, or far below it. The text is among the
     /// warnings, too.
     pub fn doubt(&self) -> Option<String> {
-        self.locked().or_else(|| self.held()).or_else(|| self.lost())
+        self.held().or_else(|| self.below())
     }
 
     /// The factor of rock that yields is farther below its lower bound than flow without dilation explains.
-    fn lost(&self) -> Option<String> {
+    fn below(&self) -> Option<String> {
         let (bracket, failed) = (self.bracket.as_ref()?, self.high?);
         far_below(failed, bracket.lower.value(), least_kept(self.simulation.case(), failed))
     }
 
-    /// The factor of rock that yields is above its upper bound.
-    fn locked(&self) -> Option<String> {
-        let bracket = self.bracket.as_ref()?;
-        let moving: f64 = bracket.moving().map(|motion| motion.mass).sum();
-        let (stable, limit) = (self.low.filter(|_| moving > self.simulation.mass_of_few())?, bracket.upper.value());
-        (stable > ABOVE * limit).then(|| {
-            format!(
-                "F = {stable:.4} was stable, {:.1} % above the upper bound of limit analysis ({limit:.4}): the mesh is \
-                 too coarse for rock that yields; set a smaller `mesh.size`",
-                100.0 * (stable / limit - 1.0)
-            )
-        })
-    }
-
-    /// The factor of rigid blocks is above their bound.
+    /// The factor is above the bound.
     fn held(&self) -> Option<String> {
-        let bound = self.bound.as_ref().ok().filter(|bound| self.moves_slope(bound))?;
-        let (stable, limit) = (self.low?, bound.level_tops.factor.value());
-        (stable > ABOVE * limit).then(|| {
+        let (limit, stable) = (self.at_most()?, self.low?);
+        let over = 100.0 * (stable / limit - 1.0);
+        let above = format!("F = {stable:.4} was stable, {over:.1} % above");
+        Some(if self.bracket.is_some() {
             format!(
-                "F = {stable:.4} was stable, {:.1} % above what limit analysis of rigid blocks allows ({limit:.4}): \
-                 something other than strength holds a block; look at those that `enmm bound` names, and try a finer \
-                 mesh",
-                100.0 * (stable / limit - 1.0)
+                "{above} the upper bound of limit analysis ({limit:.4}): the mesh is too coarse for rock that yields; \
+                 set a smaller `mesh.size`"
+            )
+        } else {
+            format!(
+                "{above} what limit analysis of rigid blocks allows ({limit:.4}): something other than strength \
+                 holds a block; look at those that `enmm bound` names, and try a finer mesh"
             )
         })
     }

@@ -21,7 +21,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::StepError;
 
 use super::limit_analysis::continuum::{self, Bracket};
-use super::limit_analysis::{self, Bound};
+use super::limit_analysis::{self, Bound, BoundError};
 use enmm::model::case::{Case, Invalid};
 use enmm::model::{ExplicitAlone, Integrators, Simulation};
 
@@ -171,8 +171,10 @@ pub enum End {
     Failed(StepError),
 }
 
-/// Most triangles of the meshes of limit analysis beside a search: a second or two.
-const TRIANGLES: usize = 1000;
+/// Most triangles of the first meshes of limit analysis beside a search, and of the last: twice as many from one to the
+/// next until the bounds are close, some 30 s of a processor together. Time itself decides nothing, so that a case has
+/// the same bounds on any machine.
+const TRIANGLES: [usize; 2] = [1000, 4000];
 
 /// Result of a search.
 #[derive(Debug, Clone)]
@@ -323,8 +325,20 @@ fn second_opinion(case: &Case, end: &End) -> (Result<Bound, String>, Option<Brac
     if !case.yields() {
         return (limit_analysis::bound(case).map_err(|error| error.to_string()), None);
     }
-    match continuum::bracket(case, TRIANGLES) {
+    match close_bracket(case) {
         Ok(bracket) => (Err("rock yields, and blocks are not rigid".to_owned()), Some(bracket)),
         Err(error) => (Err(error.to_string()), None),
     }
+}
+
+/// The bracket of the first meshes on which it is close, else of the last that have a solution.
+fn close_bracket(case: &Case) -> Result<Bracket, BoundError> {
+    let [mut triangles, most] = TRIANGLES;
+    let mut bracket = continuum::bracket(case, triangles)?;
+    while !bracket.is_close() && triangles < most {
+        triangles *= 2;
+        let Ok(finer) = continuum::bracket(case, triangles) else { break };
+        bracket = finer;
+    }
+    Ok(bracket)
 }

@@ -60,10 +60,11 @@ def _outputs(case: Case, output: Output, options: dict[str, Any], hear: Callable
 
 
 def _of_fos(found: "_tasks.Fos") -> dict[str, Any]:
-    """Factor and what fails. A factor beyond the search is its limit, with the status that says so."""
-    factor, (low, high) = found.factor, found.bracket
-    if factor is None:
-        factor = found.at_least if found.at_least is not None else high
+    """Factor and what fails. A factor beyond the search is its limit, with the status that says so; one above an upper
+    bound is the bound."""
+    low, high = found.bracket
+    known = (found.at_most, found.factor, found.at_least, high)
+    factor = next((value for value in known if value is not None), None)
     if factor is None or found.status == "failed":
         message = f"the search for the factor of safety ended {found.status}: {found.record['remedy']}"
         raise StepError(message, Status.NUMERICAL_FAILURE)

@@ -43,7 +43,7 @@ const MOVES: f64 = 0.1;
 const FANNED: usize = 2;
 /// Root of the area of triangles about such a point over their distance from it.
 const SECTOR: f64 = 0.3;
-/// Distance of both bounds, relative to the lower one, that is worth a warning.
+/// Distance of both bounds, relative to the lower one, from which on they are not close.
 const APART: f64 = 0.05;
 /// Share of its triangles that a mesh has at least, and the meshes that are tried for it.
 const FULL: f64 = 0.85;
@@ -69,6 +69,11 @@ pub struct Bracket {
 }
 
 impl Bracket {
+    /// Whether both bounds tell the factor to within 5 %, or lie outside of the range.
+    pub fn is_close(&self) -> bool {
+        apart(self.lower, self.upper).is_none_or(|share| share <= APART)
+    }
+
     /// The rock that moves: triangles with more than a tenth of the greatest speed.
     pub fn moving(&self) -> impl Iterator<Item = &Motion> {
         self.mechanism.iter().filter(|motion| motion.velocity.norm() > MOVES)
@@ -119,7 +124,7 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
     let unsolved = |status| unsolved(stresses.patches.len(), status);
     let start = found.proven.factor.strength() * (1.0 + AHEAD);
     let lower = prove(|x| lower::program(&stresses, x).solve(), start, Proof::Equilibrium).map_err(unsolved)?;
-    warnings.extend(apart(lower.factor, found.proven.factor));
+    warnings.extend(warning(lower.factor, found.proven.factor));
     Ok(Bracket {
         lower: lower.factor,
         upper: found.proven.factor,
@@ -131,17 +136,22 @@ pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
     })
 }
 
+/// Distance of both bounds relative to the lower one.
+fn apart(lower: Factor, upper: Factor) -> Option<f64> {
+    match (lower, upper) {
+        (Factor::Found(lower), Factor::Found(upper)) => Some(upper / lower - 1.0),
+        _ => None,
+    }
+}
+
 /// What to do where the bounds are far apart.
-fn apart(lower: Factor, upper: Factor) -> Option<String> {
-    let (Factor::Found(lower), Factor::Found(upper)) = (lower, upper) else { return None };
-    let share = upper / lower - 1.0;
-    (share > APART).then(|| {
-        format!(
-            "the bounds are {:.1} % apart: ask `enmm bound` for more triangles with --triangles, more so where joints \
-             cut the rock into many blocks",
-            100.0 * share
-        )
-    })
+fn warning(lower: Factor, upper: Factor) -> Option<String> {
+    let share = apart(lower, upper).filter(|share| *share > APART)?;
+    Some(format!(
+        "the bounds are {:.1} % apart: ask `enmm bound` for more triangles with --triangles, more so where joints cut \
+         the rock into many blocks",
+        100.0 * share
+    ))
 }
 
 fn unsolved(triangles: usize, status: impl std::fmt::Debug) -> BoundError {
