@@ -104,6 +104,13 @@ impl Simulation {
         }
     }
 
+    /// The way in which some blocks have moved since their covers had other displacements (m); none where nothing moves.
+    pub fn mechanism_since(&self, began: &[Vector], blocks: &[BlockId]) -> Option<Mechanism> {
+        let of_these = self.blocks_since(began).into_iter().filter(|body| blocks.contains(&body.block));
+        let motions: Vec<RigidMotion> = of_these.map(|body| body.motion).collect();
+        mechanism::mechanism(&motions, self.state().drive.gravity(1.0))
+    }
+
     /// The rock that has moved farthest since its covers had other displacements (m); none where nothing can move.
     pub fn farthest_since(&self, began: &[Vector]) -> Option<Farthest> {
         self.bodies(began).first().map(Body::farthest)

@@ -292,6 +292,7 @@ fn bolts(reduction: &Reduction) -> Option<String> {
 /// How much rock fails.
 fn mechanism(trial: &Trial, reduction: &Reduction, found: &Found) -> String {
     let blocks = if trial.failing.len() == 1 { "block" } else { "blocks" };
+    let way = reduction.mechanism.map_or_else(String::new, |mechanism| format!(" by {}", mechanism.noun()));
     let fate = if trial.verdict == Verdict::Caught { ", caught after sliding" } else { "" };
     let passed = match found.which.least_area {
         _ if found.which.counts(reduction) => "",
@@ -299,7 +300,7 @@ fn mechanism(trial: &Trial, reduction: &Reduction, found: &Found) -> String {
         None => "; passed over as a chip, less than 1.5 % of the free rock: --least-area 0 counts it",
     };
     format!(
-        "{} {blocks}{fate}: {:.4} m², {:.4e} kg/m, {:.1} % of the free rock{passed}",
+        "{} {blocks}{way}{fate}: {:.4} m², {:.4e} kg/m, {:.1} % of the free rock{passed}",
         trial.failing.len(),
         trial.failing_area(),
         trial.failing_mass(),

@@ -17,6 +17,7 @@ use super::mechanism_page::write_fos_page;
 use super::run::has_run;
 use super::summary::BoltRecord;
 use enmm::engine_version;
+use enmm::model::Mechanism;
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
@@ -257,6 +258,7 @@ fn search_record(reduction: &Reduction) -> Value {
         "trials": reduction.trials.iter().map(trial_record).collect::<Vec<_>>(),
         "failing": failing.map(|trial| json!({
             "verdict": trial.verdict.name(),
+            "mechanism": reduction.mechanism.map(Mechanism::verb),
             "blocks": trial.failing.len(),
             "area": trial.failing_area(),
             "mass": trial.failing_mass(),

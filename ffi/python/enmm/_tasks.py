@@ -149,6 +149,10 @@ class Result(_Directory):
         return f"<enmm.Result {str(self.directory)!r}: {what}, {len(self.frames)} frames>"
 
 
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
 class Fos(_Directory):
     """A factor of safety: what `fos` found, or any directory that `enmm fos` wrote: `Fos("plane_slide/fos")`."""
 
@@ -159,6 +163,21 @@ class Fos(_Directory):
         super().__init__(directory)
         if directory is not None:
             self.record = json.loads((self.directory / "fos.json").read_text(encoding="utf-8"))
+
+    @property
+    def factor_corners_hold(self) -> float | None:
+        """The factor where the corners of `corner_contacts` hold; None where none carry the slope."""
+        return _number(self.record.get("factor_corners_hold"))
+
+    @property
+    def factor_lost(self) -> float | None:
+        """The greatest factor at which the slope rests in its real geometry; None where it was not found."""
+        return _number(self.record.get("factor_lost"))
+
+    @property
+    def corner_contacts(self) -> list[dict[str, Any]]:
+        """Corners that carry the slope: `block`, `ahead`, `x` and `y` (m), `length` (m), `force` (N/m)."""
+        return list(self.record.get("corner_contacts", []))
 
     @property
     def factor(self) -> float | None:

@@ -10,6 +10,7 @@ mod model;
 mod opened;
 mod program;
 mod refusal;
+mod released;
 mod search;
 mod solver;
 mod way;
@@ -19,7 +20,7 @@ use enmm::model::tables::{BlockId, Outlines};
 
 use contact::Contact;
 use corner::Corner;
-use enmm::model::Simulation;
+use enmm::model::{CornerContact, Simulation};
 use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
 use model::{Body, Strengths};
@@ -140,6 +141,17 @@ pub struct Bare {
     pub interfaces: usize,
 }
 
+/// A bound in which corners that meet rock ahead of them carry nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReleasedCorners {
+    /// The factor and its mechanism.
+    pub collapse: Collapse,
+    /// The corners.
+    pub corners: Vec<CornerContact>,
+}
+
+/// Share by which the bound without corners must be lower for them to carry the slope.
+const CARRIES: f64 = 0.02;
 /// Key of the factor that is no bound.
 const ESTIMATE: &str = "estimate";
 /// How joints that soften count, beside each bound of a case that has them.
@@ -157,6 +169,9 @@ pub struct Bound {
     pub least: Factor,
     /// Each of them stays outside both facets: bound when corners catch at every crossing.
     pub catching: Collapse,
+    /// As `level_tops` without corners that meet rock ahead of them in a point, or over a length that cannot bear their
+    /// force; none where there are no such corners.
+    pub released: Option<ReleasedCorners>,
     /// The associated bound without cohesion and tensile strength of interfaces that open; none where it was not asked.
     pub bare: Option<Bare>,
     /// Estimate, and no bound, of the factor of joints that dilate as the case says, those that open bare; none where
@@ -249,7 +264,12 @@ impl Bound {
                 self.least.value()
             )
         };
-        let mut rows = vec![
+        let free = self.released.as_ref().map(|released| {
+            row("corners_free", "corners carry nothing", &released.collapse, "upper bound without corners that meet rock ahead")
+        });
+        let (first, later) = if self.carrying().is_empty() { (None, free) } else { (free, None) };
+        let mut rows: Vec<Row<'_>> = first.into_iter().collect();
+        rows.extend([
             row(
                 "associated",
                 "associated",
@@ -258,13 +278,33 @@ impl Bound {
             ),
             row("level_tops", "level tops pass", &self.level_tops, &level),
             row("catching", "every corner catches", &self.catching, "upper bound if no crossing lets a block pass"),
-        ];
+        ]);
+        rows.extend(later);
         if let Some(bare) = &self.bare {
             rows.push(row("bare", "open joints bare", &bare.collapse, &bare.meaning()));
         }
         let estimate = "estimate, no bound: joints dilate as the case says, open ones are bare";
         rows.extend(self.estimate.as_ref().map(|collapse| row(ESTIMATE, "without normality", collapse, estimate)));
         rows
+    }
+
+    /// The corners that carry the slope: without them the bound is lower by more than 2 %.
+    pub fn carrying(&self) -> &[CornerContact] {
+        let lower = (1.0 - CARRIES) * self.level_tops.factor.value();
+        self.released.as_ref().filter(|r| r.collapse.factor.value() < lower).map_or(&[], |r| &r.corners)
+    }
+
+    /// That corners carry the slope.
+    fn corners_warning(&self) -> Option<String> {
+        let place = |c: &CornerContact| format!("block {} at ({:.3}, {:.3}) m", c.block, c.ends[0].x, c.ends[0].y);
+        let places: Vec<String> = self.carrying().iter().map(place).collect();
+        let without = self.released.as_ref()?.collapse.factor;
+        (!places.is_empty()).then(|| {
+            format!(
+                "corners that meet rock ahead of them carry the slope: {}; without them the bound is {without}",
+                places.join(", ")
+            )
+        })
     }
 
     /// The factors in one line.
@@ -277,7 +317,9 @@ impl Bound {
             None => "no estimate without normality".to_owned(),
         };
         let bare = bare.unwrap_or_default();
-        format!("upper bound {level} where level tops pass, {associated} associated{bare}; {estimate}")
+        let free = self.released.as_ref().filter(|_| !self.carrying().is_empty());
+        let free = free.map(|free| format!("{} where corners carry nothing, ", free.collapse.factor)).unwrap_or_default();
+        format!("upper bound {free}{level} where level tops pass, {associated} associated{bare}; {estimate}")
     }
 
     /// What bounds count that is not there once joints open.
@@ -328,6 +370,8 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         true => associated.clone(),
         false => search.limit_near(&both, None).map_err(unsolved)?,
     };
+    let corner_contacts = simulation.corner_contacts();
+    let free_corners = released::released(&mut search, corner_contacts, &corners, &choice.limit).map_err(unsolved)?;
     let opened = beside.then(|| opened::opened(&mut search, &associated)).transpose().map_err(unsolved)?;
     let (estimated, rounds) = opened.as_ref().map_or((None, 0), estimate::estimate);
     let boxes = way::boxes(&outlines, &simulation.model().covers.element_block, program.bodies.len());
@@ -340,6 +384,8 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         level_tops: collapse(&choice.limit),
         least: choice.least,
         catching: collapse(&catching),
+        released: free_corners
+            .map(|free| ReleasedCorners { collapse: collapse(&free.limit), corners: free.corners }),
         bare: opened.map(|o| Bare { collapse: collapse(&o.limit), share: o.share, interfaces: o.contacts }),
         estimate: estimated.as_ref().map(collapse),
         blocks: [program.bodies.iter().filter(|body| !body.is_gone).count(), free],
@@ -351,6 +397,7 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         notes: built.notes.iter().cloned().chain(ductile).collect(),
         warnings,
     };
+    bound.warnings.extend(bound.corners_warning());
     bound.warnings.extend(bound.warning());
     Ok(bound)
 }

@@ -86,7 +86,8 @@ impl Search<'_> {
         }
     }
 
-    fn solve(&mut self, strength: f64, more: &[Contact]) -> Result<Solution, Unsolved> {
+    /// Solves the program of one strength with `more` contacts.
+    pub fn solve(&mut self, strength: f64, more: &[Contact]) -> Result<Solution, Unsolved> {
         self.programs += 1;
         self.program.solve(strength, more)
     }

@@ -23,7 +23,7 @@ use enmm::model::StepError;
 use super::limit_analysis::continuum::{self, Bracket};
 use super::limit_analysis::{self, Bound, BoundError};
 use enmm::model::case::{Case, Invalid};
-use enmm::model::{ExplicitAlone, Integrators, Simulation};
+use enmm::model::{ExplicitAlone, Integrators, Mechanism, Simulation};
 
 pub use corners::{CarryingCorner, CornersHold};
 pub use judge::{Reason, Verdict};
@@ -187,6 +187,8 @@ pub struct Reduction {
     pub high: Option<f64>,
     /// How the search ended.
     pub end: End,
+    /// The way in which the slope fails in the least trial that was not stable.
+    pub mechanism: Option<Mechanism>,
     /// Corners that carry the slope, with the search in which they hold; none where they do not decide.
     pub corners: Option<CornersHold>,
     /// The factor before nudges, where the slope fails by turning and its greatest stable trial was nudged.
@@ -294,6 +296,7 @@ pub fn factor_of_safety(
     };
     let (series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
     rest.warnings.extend(toppling::coarse(&base, &series));
+    let mechanism = toppling::mechanism(&base, &series);
     let (bound, bracket) = second_opinion(case, &series.end);
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
     let free_area = base.free_area();
@@ -302,6 +305,7 @@ pub fn factor_of_safety(
         low: series.low,
         high: series.high,
         end: series.end,
+        mechanism,
         corners,
         before_nudges,
         lost,

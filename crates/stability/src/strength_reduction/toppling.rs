@@ -67,12 +67,15 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
     (Series { low, high, end, stable, ..series }, Some(before))
 }
 
+/// The way in which the least trial fails that was not stable.
+pub fn mechanism(base: &Base, series: &Series) -> Option<Mechanism> {
+    let (trial, simulation) = series.trial(series.high).zip(series.unstable.as_ref())?;
+    base.mechanism(simulation, &trial.failing)
+}
+
 /// Whether blocks turn that fail.
 fn turns(base: &Base, series: &Series) -> bool {
-    series.trial(series.high).zip(series.unstable.as_ref()).is_some_and(|(trial, simulation)| {
-        let mechanism = base.mechanism(simulation, &trial.failing);
-        matches!(mechanism, Some(Mechanism::Topples | Mechanism::Rotates))
-    })
+    matches!(mechanism(base, series), Some(Mechanism::Topples | Mechanism::Rotates))
 }
 
 /// Width (m) of a block: that of a rectangle of the same area and perimeter.

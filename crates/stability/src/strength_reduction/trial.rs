@@ -10,10 +10,9 @@ use super::series::Outcome;
 use super::setting::Setting;
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
-use enmm::geometry::{Point, Vector};
-use enmm::model::mechanism::{Mechanism, RigidMotion, mechanism};
+use enmm::geometry::Vector;
 use enmm::model::tables::BlockId;
-use enmm::model::{BoltCondition, BoltState, Ledger, Simulation, StepError, StepReport};
+use enmm::model::{BoltCondition, BoltState, Ledger, Mechanism, Simulation, StepError, StepReport};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
 const WINDOWS_PER_FALL: f64 = 10.0;
@@ -236,33 +235,8 @@ impl Base {
 
     /// The way in which blocks have moved since the trial began; none where nothing fails.
     pub fn mechanism(&self, simulation: &Simulation, failing: &[FailingBlock]) -> Option<Mechanism> {
-        let boundary = &simulation.model().boundary;
-        let mut bounds = vec![[f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY]; self.free.len()];
-        for (place, &block) in boundary.reference.iter().zip(&boundary.block) {
-            let [left, low, right, high] = &mut bounds[block.index()];
-            (*left, *low) = (left.min(place.x), low.min(place.y));
-            (*right, *high) = (right.max(place.x), high.max(place.y));
-        }
-        let bears = simulation.state().contacts.iter().filter(|contact| contact.normal_force > 0.0);
-        let mut is_borne = vec![false; self.free.len()];
-        for contact in bears {
-            let points = [boundary.nodes.point[contact.node], contact.edge];
-            points.iter().for_each(|&point| is_borne[boundary.block[point].index()] = true);
-        }
-        let motion = |block: &FailingBlock| {
-            let b = BlockId::new(block.block as usize);
-            let [left, low, right, high] = bounds[b.index()];
-            RigidMotion {
-                mass: block.mass,
-                centroid: block.position,
-                bounds: [Point::new(left, low), Point::new(right, high)],
-                motion: block.way,
-                turn: block.rotation,
-                is_borne: is_borne[b.index()],
-            }
-        };
-        let motions: Vec<RigidMotion> = failing.iter().map(motion).collect();
-        mechanism(&motions, simulation.acceleration())
+        let blocks: Vec<BlockId> = failing.iter().map(|block| BlockId::new(block.block as usize)).collect();
+        simulation.mechanism_since(&self.simulation.state().displacement, &blocks)
     }
 
     /// The motion at the end of a window in which the fastest block has gone a way (m), without that of a few.
