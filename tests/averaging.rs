@@ -81,7 +81,8 @@ fn elements_flow_together_as_each_alone() {
         "title = \"two\"\n[domain]\noutline = [[0, 0], [32, 0], [12, 10], [0, 10]]\n[mesh]\nsize = 1.1\nangle_deg = 9\n\
          [[joint]]\npoints = [[-1, 3], [30, 5]]\n[joint_law.joint]\nfriction_deg = 25\n[in_situ]\nsxx = -2e4\n\
          syy = -2e4\n[rock.soil]\ndensity = 2040\nyoung = 1e8\npoisson = 0.3\nfriction_deg = 20\ncohesion = 2e4\n\
-         dilation_deg = 20\n[rock.low]\ndensity = 2100\nyoung = 1e8\npoisson = 0.3\nregion = [[-1, -1], [40, -1], [40, 2.2], [-1, 4.4]]\n\
+         dilation_deg = 20\n[rock.low]\ndensity = 2100\nyoung = 1e8\npoisson = 0.3\n\
+         region = [[-1, -1], [40, -1], [40, 2.2], [-1, 4.4]]\n\
          hoek_brown = { sigma_ci = 1e6, mi = 5, gsi = 30, d = 0.7 }\n[[fix]]\nedge = [[0, 0], [32, 0]]\n[[stage]]\n\
          name = \"go\"\nkind = \"dynamic\"\nduration = 10\n",
     );

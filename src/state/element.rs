@@ -97,8 +97,8 @@ impl Model {
         [xx, yy, xy, self.pre_stress_out.get(element.index()).copied().unwrap_or_default()]
     }
 
-    /// Plastic strain that brings a trial stress xx, yy, xy, zz (Pa) of an element back to the surface of its rock; none
-    /// where it is elastic (Eqs. 57, 59a).
+    /// Plastic strain that brings a trial stress xx, yy, xy, zz (Pa) of an element back to the surface of its rock;
+    /// none where it is elastic (Eqs. 57, 59a).
     #[inline]
     pub fn flow(&self, surface: &YieldSurface, element: ElementId, trial: [f64; 4]) -> Option<PlasticStrain> {
         let host = self.covers.host[element];

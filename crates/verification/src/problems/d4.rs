@@ -108,8 +108,8 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
         "title = \"Sample with a joint at {b_deg}° from its axis\"\n[domain]\noutline = {}\n[mesh]\nsize = {:e}\n\
          angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = \
          {:e}\n\
-         poisson = 0.25\ncohesion = {:e}\nfriction_deg = {phi:?}\ndilation_deg = {phi:?}\n[joint_law.joint]\ncohesion = {:e}\n\
-         friction_deg = {:?}\n[solver]\ncontact_stiffness = {:?}\n\
+         poisson = 0.25\ncohesion = {:e}\nfriction_deg = {phi:?}\ndilation_deg = {phi:?}\n[joint_law.joint]\n\
+         cohesion = {:e}\nfriction_deg = {:?}\n[solver]\ncontact_stiffness = {:?}\n\
          [[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
          [[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\naxes = \"y\"\n\
          [[fix]]\npoint = [{:?}, 0.0]\naxes = \"x\"\n[[stage]]\nname = \"press\"\nkind = \"dynamic\"\ndamping = 0.5\n\
