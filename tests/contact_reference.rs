@@ -129,10 +129,22 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
     states.map(|state| plain.iter().filter(|contact| contact.history.state == state).count())
 }
 
+/// The slope with a rock bridge, which breaks by section, as the upper half of its master joint.
+fn bridged() -> String {
+    let half = "points = [[15, 8], [38.5, 22.5]]";
+    let bridge = "[[bridge]]\npoints = [[38.5, 22.5], [62, 37]]\nlaw = \"rock\"\n[[joint_set]]";
+    let law = "[joint_law.rock]\nfriction_deg = 45\ncohesion = 2e5\nresidual_cohesion = 0\ntension = 1e5\n\
+               breaks = \"by section\"\n[joint_law.master]";
+    let text = SLOPE.replace("points = [[15, 8], [62, 37]]", half).replacen("[[joint_set]]", bridge, 1);
+    text.replace("[joint_law.master]", law)
+}
+
 #[test]
 fn the_solver_of_steps_agrees_with_the_method_written_out() {
-    for law in ["friction_deg = 45", "friction_deg = 45\ndilation_deg = 15\ndilation_slip = 1.0"] {
-        let mut slope = simulation(&SLOPE.replace("friction_deg = 45", law));
+    let dilates = SLOPE.replace("friction_deg = 45", "friction_deg = 45\ndilation_deg = 15\ndilation_slip = 1.0");
+    for (law, text) in [("plain", SLOPE), ("dilates", &dilates), ("with a bridge", &bridged())] {
+        let mut slope = simulation(text);
+        assert_eq!(slope.model().sections.list.is_empty(), law != "with a bridge");
         let mut seen = [0; 3];
         for (steps, stage) in [(1, "load comes"), (400, "rests"), (1, "loses its strength"), (300, "fails")] {
             if stage == "loses its strength" {
