@@ -1,7 +1,6 @@
 //! How what the user wrote ([`Case`]) is built, and the façade that callers hold ([`Simulation`]).
 
 pub mod assemble;
-pub mod corners;
 mod failure;
 pub mod fit;
 pub mod mechanism;
@@ -16,7 +15,6 @@ pub use enmm_case as case;
 pub use enmm_case::Case;
 
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
-pub use corners::CornerContact;
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};

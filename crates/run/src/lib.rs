@@ -14,6 +14,7 @@ pub mod history;
 mod input;
 mod mechanism_page;
 mod model_page;
+pub mod motion;
 pub mod rock_mass;
 mod run;
 mod stereonet;

@@ -14,7 +14,7 @@ use enmm_io::files::{at_path, write_atomic};
 use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::changes::{CrumbRecord, TraceEndRecord};
-use crate::verdict::{FailureOfStage, PermanentMotion, Verdict};
+use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
 pub const FAILED: &str = "FAILED";
@@ -356,6 +356,8 @@ pub(super) struct RunRecord<'a> {
     pub failure: Option<&'a StepError>,
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
+    pub failed: bool,
+    pub verdict: String,
     pub ledger: &'a Ledger,
     pub wall: WallSeconds,
     pub warnings: Vec<String>,
@@ -367,7 +369,6 @@ impl Summary {
     pub(super) fn new(simulation: &Simulation, record: RunRecord) -> Self {
         let (model, state) = (simulation.model(), simulation.state());
         let counters = &state.counters;
-        let verdict = Verdict::of(&record.stages, record.status);
         Self {
             title: simulation.case().title.clone(),
             version: engine_version().to_owned(),
@@ -375,8 +376,8 @@ impl Summary {
             case_hash: record.case_hash.to_owned(),
             settings: record.settings.to_vec(),
             status: record.status,
-            failed: verdict.failed,
-            verdict: verdict.text,
+            failed: record.failed,
+            verdict: record.verdict,
             failure: record.failure.map(FailureRecord::from),
             model: ModelCounts::of(simulation),
             stages: record.stages,

@@ -1,6 +1,7 @@
 //! Factors of safety of slopes: by strength reduction, which lets the model move, and by limit analysis.
 #![forbid(unsafe_code)]
 
+pub mod corners;
 pub mod kinematics;
 pub mod limit_analysis;
 pub mod strength_reduction;

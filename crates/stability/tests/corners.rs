@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use enmm::model::{Case, CornerContact, Simulation};
+use enmm::model::{Case, Simulation};
+use enmm_stability::corners::{CornerContact, corner_contacts};
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
 /// A wedge of a face from (10, 5) to (15, 20) on a plane of 35° through `joint`, with the ground in front of it.
@@ -32,7 +33,7 @@ fn factor(text: &str) -> Reduction {
 
 fn points(text: &str) -> Vec<CornerContact> {
     let simulation = Simulation::new(case(text)).expect("builds");
-    simulation.corner_contacts().into_iter().filter(|corner| corner.length() < 0.2).collect()
+    corner_contacts(&simulation).into_iter().filter(|corner| corner.length() < 0.2).collect()
 }
 
 /// The bracket is 1 % wide, and so is the tolerance.

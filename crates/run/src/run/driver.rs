@@ -12,8 +12,9 @@ use crate::film::{Film, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
 use crate::input::input_record;
+use crate::motion::{FailureOfStage, PermanentMotion};
 use crate::summary::{FAILED, RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
-use crate::verdict::{FailureOfStage, PermanentMotion, Verdict};
+use crate::verdict::Verdict;
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
 use enmm::model::bytes::BytesError;
@@ -625,7 +626,7 @@ impl<'a> Driver<'a> {
         self.warnings.extend(doubt.clone());
         let verdict = Verdict::of(&stages, status);
         let time = self.simulation.time();
-        let note = Note::Verdict { text: verdict.text, failed: verdict.failed };
+        let note = Note::Verdict { text: verdict.text.clone(), failed: verdict.failed };
         self.film.note(time, &note).map_err(RunError::Output)?;
         self.close_film(status, failure, doubt.as_ref()).map_err(RunError::Output)?;
         let record = RunRecord {
@@ -636,6 +637,8 @@ impl<'a> Driver<'a> {
             failure,
             stages,
             permanent: self.progress.permanent.clone(),
+            failed: verdict.failed,
+            verdict: verdict.text,
             ledger: &self.progress.ledger,
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),

@@ -20,7 +20,8 @@ use enmm::model::tables::{BlockId, Outlines};
 
 use contact::Contact;
 use corner::Corner;
-use enmm::model::{CornerContact, Simulation};
+use crate::corners::{CornerContact, corner_contacts};
+use enmm::model::Simulation;
 use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
 use model::{Body, Strengths};
@@ -370,8 +371,8 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         true => associated.clone(),
         false => search.limit_near(&both, None).map_err(unsolved)?,
     };
-    let corner_contacts = simulation.corner_contacts();
-    let free_corners = released::released(&mut search, corner_contacts, &corners, &choice.limit).map_err(unsolved)?;
+    let barred = corner_contacts(&simulation);
+    let free_corners = released::released(&mut search, barred, &corners, &choice.limit).map_err(unsolved)?;
     let opened = beside.then(|| opened::opened(&mut search, &associated)).transpose().map_err(unsolved)?;
     let (estimated, rounds) = opened.as_ref().map_or((None, 0), estimate::estimate);
     let boxes = way::boxes(&outlines, &simulation.model().covers.element_block, program.bodies.len());

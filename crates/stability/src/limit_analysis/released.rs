@@ -1,7 +1,8 @@
 //! The bound without the corner contacts that carry a slope (theory, sections 16 and 19).
 
 use enmm::geometry::Point;
-use enmm::model::CornerContact;
+
+use crate::corners::CornerContact;
 
 use super::contact::Contact;
 use super::corner::Corner;

@@ -6,7 +6,8 @@ use super::setting::Setting;
 use super::slip::height_and_gravity;
 use super::{ReductionOptions, Trial, Verdict};
 use enmm::model::case::CornerContacts;
-use enmm::model::{CornerContact, Simulation};
+use crate::corners::{CornerContact, corner_contacts};
+use enmm::model::Simulation;
 
 /// Share of the weight that moves from which the force of corners counts.
 const COUNTS: f64 = 0.02;
@@ -46,10 +47,10 @@ pub fn carrying(base: &Simulation, searches: &[&Series]) -> Vec<CarryingCorner> 
     }
     let models = || std::iter::once(base).chain(searches.iter().filter_map(|search| search.stable.as_ref()));
     let with_force = |corner: CornerContact| {
-        let force = models().map(|model| model.corner_force(&corner)).fold(0.0, f64::max);
+        let force = models().map(|model| corner.force(model)).fold(0.0, f64::max);
         CarryingCorner { corner, force }
     };
-    let corners = base.corner_contacts().into_iter().map(with_force);
+    let corners = corner_contacts(base).into_iter().map(with_force);
     let crushed: Vec<CarryingCorner> = corners.filter(|held| held.force >= held.corner.capacity()).collect();
     let (_, gravity) = height_and_gravity(base);
     let moving = searches.iter().filter_map(|search| search.trial(search.high)).map(Trial::failing_mass).reduce(f64::max);

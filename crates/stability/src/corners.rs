@@ -3,13 +3,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use enmm_case::Case;
-
-use crate::contact::{Boundary, EdgeId, SideId};
-use crate::cover::BlockId;
-use crate::geometry::{Point, Vector};
-
-use super::Simulation;
+use enmm::geometry::{Point, Vector};
+use enmm::model::Simulation;
+use enmm::model::case::Case;
+use enmm::model::tables::{BlockId, Boundary, EdgeId, SideId};
 
 /// Angle (rad) by which a face must rise to stand in the way: less is a kink of the drawing.
 const STRAIGHT: f64 = 1e-3;
@@ -47,33 +44,31 @@ impl CornerContact {
     }
 }
 
-impl Simulation {
-    /// The corner contacts of the drawing with the blocks that are there.
-    pub fn corner_contacts(&self) -> Vec<CornerContact> {
-        let rounds = Rounds::new(&self.model().boundary, &self.state().removed);
-        let mut found: Vec<CornerContact> = rounds.places().flat_map(|place| rounds.corners_at(place)).collect();
-        found.iter_mut().for_each(|corner| corner.strength = self.strength_at(corner));
-        found
-    }
-
-    /// Normal force (N/m) that a corner contact carried in the last step.
-    pub fn corner_force(&self, corner: &CornerContact) -> f64 {
-        let boundary = &self.model().boundary;
-        let key = |node| boundary.block[boundary.nodes.point[node]];
-        let is_in = |block, side| corner.contacts.binary_search(&(block, side)).is_ok();
-        let contacts = self.state().contacts.iter().filter(|c| is_in(key(c.node), c.side));
+impl CornerContact {
+    /// Normal force (N/m) that it carried in the last step of a model.
+    pub fn force(&self, simulation: &Simulation) -> f64 {
+        let boundary = &simulation.model().boundary;
+        let block = |node| boundary.block[boundary.nodes.point[node]];
+        let is_own = |block, side| self.contacts.binary_search(&(block, side)).is_ok();
+        let contacts = simulation.state().contacts.iter().filter(|c| is_own(block(c.node), c.side));
         contacts.map(|contact| contact.normal_force).sum()
     }
+}
 
-    /// Uniaxial strength (Pa) of the weaker rock of a corner contact.
-    fn strength_at(&self, corner: &CornerContact) -> f64 {
-        let model = self.model();
-        let of_block = |block: BlockId| {
-            let rocks = model.covers.elements_of(block).map(|e| model.element_rock[e]);
-            rocks.map(|rock| uniaxial_strength(self.case(), rock as usize)).fold(f64::INFINITY, f64::min)
-        };
-        of_block(corner.block).min(of_block(corner.ahead))
-    }
+/// The corner contacts of the drawing with the blocks that are there.
+pub fn corner_contacts(simulation: &Simulation) -> Vec<CornerContact> {
+    let rounds = Rounds::new(&simulation.model().boundary, &simulation.state().removed);
+    let mut found: Vec<CornerContact> = rounds.places().flat_map(|place| rounds.corners_at(place)).collect();
+    let strength = |block| strength_of(simulation, block);
+    found.iter_mut().for_each(|corner| corner.strength = strength(corner.block).min(strength(corner.ahead)));
+    found
+}
+
+/// Uniaxial strength (Pa) of the weakest rock of a block.
+fn strength_of(simulation: &Simulation, block: BlockId) -> f64 {
+    let model = simulation.model();
+    let rocks = model.covers.elements_of(block).map(|e| model.element_rock[e]);
+    rocks.map(|rock| uniaxial_strength(simulation.case(), rock as usize)).fold(f64::INFINITY, f64::min)
 }
 
 /// Uniaxial strength (Pa) of a rock of the case, [`ROCK_STRENGTH`] where it is elastic.
