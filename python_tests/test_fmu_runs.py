@@ -11,7 +11,7 @@ import numpy
 import pytest
 from conftest import from_environment
 from fmpy import simulate_fmu
-from fmu_support import ERROR, OK, Fmu, bits, size
+from fmu_support import ERROR, OK, WARNING, Fmu, bits, size
 
 ROOT = Path(__file__).parents[1]
 CASES = ROOT / "examples" / "cases"
@@ -394,6 +394,14 @@ def test_an_overlap_is_an_event_a_warning_and_two_outputs(enmm, opened, tmp_path
     kinds = instance.get("event_count", "last_event_kind")
     assert kinds[0] >= 1 and kinds[1] in (2, 4)
     assert sum("blocks 0 and 1 overlap by" in text for _, _, text in instance.log) == 1
+
+
+def test_a_slope_that_fails_is_a_warning_once(incline_fmu, opened):
+    instance = opened(incline_fmu, logging=True).initialize()
+    run_of(instance, 0.1, 1.0)
+    told = [(status, text) for status, _, text in instance.log if "the slope has failed" in text]
+    assert len(told) == 1 and told[0][0] == WARNING
+    assert "by sliding: 1 block, largest displacement 0.73" in told[0][1]
 
 
 # Threads.

@@ -6,8 +6,8 @@ use std::path::Path;
 use crate::common::saved::Whole;
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
-use enmm::model::BlockState;
 use enmm::model::bytes::{decode, encode};
+use enmm::model::{BlockState, Mechanism};
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 fn example(name: &str) -> LoadedCase {
@@ -181,6 +181,20 @@ fn the_incline_slips_once_and_fails_once_and_says_when() {
     // s = ½·g'·t² passes the mesh size of 0.6 m at t = sqrt(2·0.6/1.812813).
     assert!((info.events[2].time - 0.8136).abs() < 1e-3, "{}", info.events[2].time);
     assert_eq!(model.totals().failed_blocks, 1);
+}
+
+/// The host is told once that the slope has failed, in the step in which it does, and goes on as it likes.
+#[test]
+fn the_step_in_which_the_slope_fails_says_how() {
+    let mut model = model("block_on_incline");
+    let infos: Vec<_> = (0..10).map(|k| model.do_step(0.1 * f64::from(k), 0.1).unwrap()).collect();
+    let told: Vec<usize> = (0..infos.len()).filter(|&k| infos[k].failure.is_some()).collect();
+    assert_eq!(told, [8], "it passes 0.6 m at 0.8136 s");
+    let failure = infos[8].failure.expect("told");
+    assert_eq!((failure.mechanism, failure.blocks, failure.farthest.block.number()), (Mechanism::Slides, 1, 1));
+    let way = 0.5 * 1.812813 * 0.9f64.powi(2);
+    assert!((failure.farthest.displacement / way - 1.0).abs() < 5e-3, "{failure}");
+    assert!(failure.to_string().starts_with("by sliding: 1 block, largest displacement 0.73"), "{failure}");
 }
 
 #[test]

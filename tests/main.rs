@@ -56,6 +56,7 @@ mod ledger_table;
 mod long_run;
 mod loops;
 mod mass_scaling;
+mod mechanism;
 mod near_pairs;
 mod objectivity;
 mod observe;

@@ -4,7 +4,8 @@
 //! an internal step to get there and keeps the state from which that part was taken; the next step goes on from that
 //! state as if nothing had been read in between, unless an input has changed, which then acts from this very time.
 
-use crate::state::{Counters, Event};
+use crate::model::SlopeFailure;
+use crate::state::{Counters, Event, EventKind};
 
 use super::{Cosimulation, CosimulationError, Interpolation};
 
@@ -60,6 +61,9 @@ pub struct StepInfo {
     /// [`Cosimulation::doubt`], which is looked at when four internal steps have been taken since time 0, and whenever
     /// their number has doubled.
     pub doubt: Option<String>,
+    /// [`Cosimulation::failure`] at the end of the communication step in which so much rock has failed that the slope
+    /// has.
+    pub failure: Option<SlopeFailure>,
 }
 
 impl Cosimulation {
@@ -188,6 +192,25 @@ impl Cosimulation {
         if doublings(self.simulation.state().step) > doublings(interval.steps_before) {
             interval.info.doubt = self.doubt();
         }
+        if self.fails_within(interval) {
+            interval.info.failure = self.failure();
+        }
+    }
+
+    /// Whether the blocks that have failed have been few ([`Simulation::mass_of_few`]) until an interval, and are no
+    /// longer.
+    ///
+    /// [`Simulation::mass_of_few`]: crate::model::Simulation::mass_of_few
+    fn fails_within(&self, interval: &Interval) -> bool {
+        let (model, events) = (self.simulation.model(), &self.simulation.state().events.list);
+        let mass = |events: &[Event]| -> f64 {
+            let failed = events.iter().filter(|event| event.kind == EventKind::Failed);
+            failed.map(|event| model.mass_matrix.total[event.subject as usize]).sum()
+        };
+        let before = mass(&events[..interval.events_before.min(events.len())]);
+        let is_new = events.iter().skip(interval.events_before).any(|event| event.kind == EventKind::Failed);
+        let few = || self.simulation.mass_of_few();
+        is_new && before <= few() && mass(events) > few()
     }
 
     /// Rolls back and converts times to those that hosts count.

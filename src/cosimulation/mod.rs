@@ -24,7 +24,7 @@ use crate::geometry::Vector;
 pub use crate::model::case::limits;
 use crate::model::case::{Case, Invalid, StageKind};
 use crate::model::settle;
-use crate::model::{BlockState, Simulation};
+use crate::model::{BlockState, Simulation, SlopeFailure};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM};
 use threads::Pool;
@@ -157,6 +157,12 @@ impl Cosimulation {
     /// slope moves, or the stage needs a longer duration.
     pub fn initial_residual(&self) -> Option<f64> {
         Some(self.progress.initial_residual).filter(|ratio| *ratio > 0.0)
+    }
+
+    /// The failure of the slope since it was built, if it has failed: rock is beyond `solver.failure_displacement`, or
+    /// the initial equilibrium was not reached and rock is beyond a hundredth of the height of the model.
+    pub fn failure(&self) -> Option<SlopeFailure> {
+        self.simulation.failure(self.initial_residual().is_none())
     }
 
     /// Why the motion so far is worthless, when energy has come from nowhere: its residual is as large as the largest

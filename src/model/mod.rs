@@ -1,6 +1,7 @@
 //! How what the user wrote ([`Case`]) is built, and the façade that callers hold ([`Simulation`]).
 
 pub mod assemble;
+mod failure;
 pub mod fit;
 pub mod mechanism;
 mod observe;
@@ -14,6 +15,7 @@ pub use enmm_case as case;
 pub use enmm_case::Case;
 
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
+pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState};

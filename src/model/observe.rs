@@ -131,7 +131,7 @@ impl Simulation {
             removed,
             centroid: mean(model, &covers.star_position, block) + displacement,
             displacement,
-            rotation: rotation(model, state, block),
+            rotation: rotation(model, &state.displacement, block),
             velocity,
             angular_velocity: spin,
             mean_stress,
@@ -214,19 +214,19 @@ fn positions(model: &Model, state: &State) -> Vec<Point> {
 }
 
 /// Mean of a cover field over a block's mass.
-fn mean(model: &Model, field: &[Vector], block: BlockId) -> Vector {
+pub(super) fn mean(model: &Model, field: &[Vector], block: BlockId) -> Vector {
     let sum: Vector = model.covers.covers_of(block).map(|i| field[i] * model.mass_matrix.row_sum[i]).sum();
     sum / model.mass_matrix.total[block]
 }
 
-/// Angle (rad) of the rotation that fits the covers of a block best, weighted by mass.
-fn rotation(model: &Model, state: &State, block: BlockId) -> f64 {
+/// Angle (rad) of the rotation that fits the displacements of the covers of a block best, weighted by mass.
+pub(super) fn rotation(model: &Model, displacement: &[Vector], block: BlockId) -> f64 {
     let centre = mean(model, &model.covers.star_position, block);
-    let shift = mean(model, &state.displacement, block);
+    let shift = mean(model, displacement, block);
     let (mut cosine, mut sine) = (0.0, 0.0);
     for i in model.covers.covers_of(block) {
         let before = model.covers.star_position[i] - centre;
-        let after = before + state.displacement[i] - shift;
+        let after = before + displacement[i] - shift;
         cosine += model.mass_matrix.row_sum[i] * before.dot(&after);
         sine += model.mass_matrix.row_sum[i] * before.perp(&after);
     }

@@ -10,6 +10,9 @@ use super::case::StageKind;
 /// Steps between reports of a static stage, which show whether it is at rest.
 pub const REST_STEPS: u64 = 10;
 
+/// Steps between two looks of a run whether a static stage has run away ([`Simulation::has_run_away`]).
+pub const RUNAWAY_STEPS: u64 = 100;
+
 /// Takes steps until the stage in progress of a simulation is over; `of` finds it in its `host`. `step` takes one
 /// step, and returns its report when it requested one. Returns that of the last step, or the error that ended it.
 ///

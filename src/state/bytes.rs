@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 const MAGIC: &[u8; 8] = b"ENMMCKPT";
-const FORMAT: u32 = 12;
+const FORMAT: u32 = 13;
 const TEXT_MAX: usize = 256;
 /// Bytes of length and checksum.
 const SUMMARY: usize = 12;

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
+use engine::model::SlopeFailure;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 use super::failure::{Failure, Outcome};
@@ -221,6 +222,7 @@ impl Model {
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
         }
         if self.log.sink.is_some() {
+            self.warn_of_failure(self.inner.failure());
             self.warn_of(self.inner.doubt());
         }
     }
@@ -230,6 +232,11 @@ impl Model {
         if let Some(text) = doubt {
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, || text);
         }
+    }
+
+    /// Warns of a slope that has failed: how much of it, how far and in which way.
+    fn warn_of_failure(&mut self, failure: Option<SlopeFailure>) {
+        self.warn_of(failure.map(|failure| format!("the slope has failed {failure}")));
     }
 
     fn log_event(&mut self, event: &Event) {
@@ -252,6 +259,7 @@ impl Model {
             let message = || format!("up to t = {end} s: contact forces did not settle in {count} sub-steps");
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
         }
+        self.warn_of_failure(info.failure);
         self.warn_of(info.doubt.clone());
     }
 

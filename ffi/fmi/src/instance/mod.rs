@@ -13,6 +13,7 @@ pub use step::{Step, Update};
 use std::path::Path;
 
 use enmm::cosimulation::{Cosimulation, Event, Interpolation, Saved, apply};
+use enmm::model::SlopeFailure;
 use enmm_io::LoadedCase;
 
 use crate::log::{Category, Filter, Message, Status};
@@ -262,8 +263,14 @@ impl Instance {
             );
             self.log(Status::Warning, Category::Warning, text);
         }
+        self.warn_of_failure(self.model.failure());
         self.warn_of(self.model.doubt());
         Ok(())
+    }
+
+    /// Warns of a slope that has failed: how much of it, how far and in which way.
+    fn warn_of_failure(&mut self, failure: Option<SlopeFailure>) {
+        self.warn_of(failure.map(|failure| format!("the slope has failed {failure}")));
     }
 
     /// Warns of a motion that is worthless, of which no status tells.

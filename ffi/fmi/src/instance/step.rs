@@ -107,6 +107,7 @@ impl Instance {
             self.log(Status::Warning, Category::Warning, text);
         }
         self.warn_of(step.interval.info().doubt.clone());
+        self.warn_of_failure(step.interval.info().failure);
         Status::Ok
     }
 
@@ -114,6 +115,7 @@ impl Instance {
     fn leave(&mut self, step: &mut Step) -> Status {
         let info = self.model.leave(step.interval.clone());
         self.warn_of(info.doubt);
+        self.warn_of_failure(info.failure);
         (step.done, step.early) = (true, true);
         self.phase = Phase::Step;
         self.time = self.time_of_model();
