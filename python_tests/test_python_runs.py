@@ -181,6 +181,18 @@ def test_failed_runs_keep_their_results(package, case, tmp_path):
         package.run(case.with_values({"fix": [{"block": [500.0, 500.0]}]}))
 
 
+def test_a_slope_that_fails_in_a_static_stage_is_a_result(package, case, tmp_path):
+    weak = case.with_values(
+        {"joint_law.joint.friction_deg": 10.0, "stage": [{"name": "rest", "kind": "static", "duration": 20.0}]}
+    )
+    result = package.run(weak, tmp_path / "out")
+    assert result.failed and result.verdict.startswith("the slope failed in stage rest by sliding: 1 block")
+    assert result.summary["status"] == "finished" and result.summary["stages"][0]["ended_early"]
+    assert result.verdict in result._repr_html_()
+    at_rest = package.run(weak.with_values({"joint_law.joint.friction_deg": 60.0}), tmp_path / "rest")
+    assert not at_rest.failed and at_rest.verdict.startswith("the slope has not failed")
+
+
 # Factors of safety.
 
 

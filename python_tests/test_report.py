@@ -92,6 +92,13 @@ def close(found: float, wanted: float) -> bool:
     return abs(found - wanted) <= 6e-4 * abs(wanted) + 1e-12
 
 
+def test_the_panel_begins_with_the_verdict(report, results):
+    summary = json.loads((results / "summary.json").read_text())
+    panel = report.run("[...document.getElementById('panel').children].map((part) => [part.id, part.textContent])")
+    assert panel[0][0] == "verdict" and summary["verdict"] in panel[0][1]
+    assert summary["verdict"].startswith("the slope has not failed")
+
+
 @pytest.mark.parametrize("number_of_block", [0, 1])
 def test_a_click_on_a_block_shows_the_numbers_of_blocks_csv(report, results, number_of_block):
     block = table(results / "blocks.csv")[number_of_block]

@@ -1,5 +1,5 @@
 //! `enmm`: runs, checks and packs case files. Exit status: 0 done, 1 a verification problem that
-//! does not pass, 2 bad input, 3 numerical failure, 130 interrupted.
+//! does not pass, 2 bad input, 3 numerical failure, 4 a slope that failed in a static stage, 130 interrupted.
 
 mod bench;
 mod bound;
@@ -31,6 +31,8 @@ use output::{fail, listed, print_line, tell_line};
 const BAD_INPUT: u8 = 2;
 /// Numerical failure, or results that could not be written.
 const FAILED: u8 = 3;
+/// The slope failed in a static stage.
+const SLOPE_FAILED: u8 = 4;
 /// Interrupted by the user.
 const INTERRUPTED: u8 = 130;
 
@@ -45,7 +47,7 @@ Examples:
   enmm fos slope.toml --set joint_law.fault.friction_deg=25
 
 Exit status: 0 done; 1 a verification problem missed its answer; 2 bad input, nothing written; 3 numerical failure, or
-output that could not be written; 130 interrupted.";
+output that could not be written; 4 the slope failed in a static stage (enmm run); 130 interrupted.";
 
 /// Explicit numerical manifold method for jointed rock slopes.
 #[derive(Parser)]

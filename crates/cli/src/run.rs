@@ -7,11 +7,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
+use enmm_run::summary::OVER;
 use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::case::CaseArguments;
 use crate::progress::Screen;
-use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, INTERRUPTED, SLOPE_FAILED, fail, print_line, tell_line};
 
 /// Set by the first interrupt.
 pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
@@ -104,7 +105,16 @@ fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
         print_line(&table(summary, directory));
     }
     match (summary.status, &summary.failure) {
-        (RunStatus::Finished, _) => summary.doubt.as_ref().map_or(ExitCode::SUCCESS, |doubt| fail(doubt, FAILED)),
+        (RunStatus::Finished, _) => match &summary.doubt {
+            Some(doubt) => fail(doubt, FAILED),
+            None if summary.failed_at_rest() => {
+                if quiet {
+                    tell_line(&summary.verdict);
+                }
+                ExitCode::from(SLOPE_FAILED)
+            }
+            None => ExitCode::SUCCESS,
+        },
         (RunStatus::Interrupted, _) => {
             let place = checkpoint.display();
             fail(&format!("interrupted at t = {:.6} s; continue with --resume {place}", summary.time), INTERRUPTED)
@@ -123,15 +133,13 @@ fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
 fn table(summary: &Summary, directory: &Path) -> String {
     let mut lines = vec![String::new()];
     let mut row = |name: &str, value: String| lines.push(format!("{name:<20} {value}"));
+    row("verdict", summary.verdict.clone());
     row("results", directory.display().to_string());
     row("page to open", directory.join(PAGE).display().to_string());
     row("simulated time", format!("{:.6} s in {} steps", summary.time, summary.steps));
     for stage in &summary.stages {
-        let end = match stage.converged {
-            Some(true) => ", at rest",
-            Some(false) => ", NOT at rest",
-            None => "",
-        };
+        let outcome = stage.outcome();
+        let end = if outcome == OVER { String::new() } else { format!(", {outcome}") };
         row(&format!("stage {}", stage.name), format!("{:.4} s, {} steps{end}", stage.time, stage.steps));
     }
     let open_close = &summary.open_close;

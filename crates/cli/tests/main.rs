@@ -7,6 +7,7 @@ mod edit;
 mod fmu;
 mod fos;
 mod import;
+mod issue_a_failed_run_read_like_a_nuisance;
 mod issue_a_result_replaced_a_record;
 mod issue_an_input_that_is_no_file_was_waited_for;
 mod issue_results_of_another_case_were_replaced;

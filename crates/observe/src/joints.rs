@@ -71,6 +71,17 @@ pub struct Joints {
     faces: usize,
 }
 
+/// Slip of a piece of joint in a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipSince {
+    /// Number of the joint trace.
+    pub trace: usize,
+    /// Distance (m) by which one face has moved along the other.
+    pub slip: f64,
+    /// Middle of the piece now (m).
+    pub place: Point,
+}
+
 /// Forces (N/m) on the first block of a face: their sum, and their parts across (tension positive) and along it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Load {
@@ -190,6 +201,26 @@ impl Joints {
         }
         found.extend(touched.into_iter().map(|(key, load)| touch(simulation, &positions, key, load)));
         found
+    }
+
+    /// How far the faces have slipped (m) along each piece since the covers had other displacements (m), with the
+    /// middle of the piece; those of excavated blocks are left out.
+    pub fn slips_since(&self, simulation: &Simulation, began: &[Vector]) -> Vec<SlipSince> {
+        let (boundary, state) = (&simulation.model().boundary, simulation.state());
+        let positions = simulation.positions();
+        let there = |edge: EdgeId| !state.removed[boundary.block[edge]];
+        let moved = |point: EdgeId| boundary.sample(point, &state.displacement) - boundary.sample(point, began);
+        let slip = |piece: &Facing| {
+            let [own, other] = [0, 1].map(|k| {
+                let (edge, span) = (piece.edges[k], piece.spans[k]);
+                let share = 0.5 * (span[0] + span[1]);
+                moved(edge) * (1.0 - share) + moved(boundary.after(edge)) * share
+            });
+            let ends = ends(boundary, &positions, piece.edges[0], piece.spans[0]);
+            let trace = boundary.trace[piece.edges[0]]?.index();
+            Some(SlipSince { trace, slip: (own - other).perp(&outward(ends)).abs(), place: (ends[0] + ends[1]) * 0.5 })
+        };
+        self.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)).filter_map(slip).collect()
     }
 
     /// Adds the forces of a contact to its face, or else to those between edges that did not face each other.

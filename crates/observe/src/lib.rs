@@ -38,7 +38,7 @@ pub use enmm::model::{
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
 pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
-pub use joints::{JOINT_QUANTITIES, JointPiece, Joints};
+pub use joints::{JOINT_QUANTITIES, JointPiece, Joints, SlipSince};
 pub use loops::{loops, node_loops};
 pub use snapshot::{Boundary, Polygons, Snapshot, moved_since, references};
 pub use stress::STRESS_QUANTITIES;

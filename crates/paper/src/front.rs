@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 use crate::number::{Digits, mass, percent, plain};
-use crate::parts::{chapter, entries, text, texts};
+use crate::parts::{chapter, entries, part, text, texts};
 use crate::records::{Record, Records};
-use crate::results::{factor_cell, limit_factor};
+use crate::results::{factor_cell, limit_factor, permanent_motions, stage_of_factor};
 use crate::table::{Cell, facts, list, paragraph, text_html};
 
 /// Project, author, date, version and the main results.
@@ -32,10 +32,10 @@ pub fn title_page(records: &Records) -> String {
     ];
     format!(
         "<header>\n<div class=\"title\">\n<h1>{}</h1>\n<p class=\"what\">Stability of a jointed rock slope: input and \
-         results</p>\n</div>\n{}</header>\n{}",
+         results</p>\n</div>\n{}{}</header>\n",
         text_html(project.unwrap_or(title)),
-        facts(&rows),
-        main_results(records)
+        main_results(records),
+        facts(&rows)
     )
 }
 
@@ -47,29 +47,34 @@ fn settings(json: &Value) -> Cell {
 /// The results that a reader looks for first, in a frame.
 fn main_results(records: &Records) -> String {
     let mut rows: Vec<(&str, Cell)> = Vec::new();
+    if let Some(run) = &records.run {
+        rows.push(("Verdict", Cell::from(run_words(&run.json))));
+    }
     if let Some(fos) = &records.fos {
         let failing = &fos.json["failing"];
         rows.push(("Factor of safety F", factor_cell(&fos.json)));
-        rows.push(("F after the stage", text(&fos.json["stage"]).into()));
+        rows.push(("F after the stage", stage_of_factor(&fos.json)));
         rows.push(("Area that fails", plain(&failing["area"], "m²", Digits::Three).into()));
         rows.push(("Mass that fails", mass(&failing["mass"]).into()));
         rows.push(("Factor by limit analysis", limit_factor(&fos.json["bound"])));
     }
     if let Some(bound) = records.bound.as_ref().filter(|_| records.fos.is_none()) {
         rows.push(("Factor by limit analysis", limit_factor(&bound.json["bound"])));
-        rows.push(("F after the stage", text(&bound.json["stage"]).into()));
+        rows.push(("F after the stage", stage_of_factor(&bound.json)));
     }
     if let Some(ensemble) = &records.ensemble {
         rows.push(("Probability of failure", percent(&ensemble.json["probability_of_failure"]).into()));
     }
-    if let Some(run) = &records.run {
-        rows.push(("Run of the stages", Cell::from(run_words(&run.json))));
-    }
-    format!("<div class=\"result\">\n{}</div>\n", facts(&rows))
+    let motions = records.run.as_ref().map_or(String::new(), |run| permanent_motions(&run.json));
+    format!("<div class=\"result\">\n{}{motions}</div>\n", facts(&rows))
 }
 
-/// How a run ended.
+/// The verdict of a run; of a version without verdicts, how it ended.
 fn run_words(json: &Value) -> String {
+    let verdict = text(&json["verdict"]);
+    if !verdict.is_empty() {
+        return verdict.to_owned();
+    }
     let moving: Vec<&str> = entries(&json["stages"])
         .iter()
         .filter(|stage| stage["converged"] == Value::Bool(false))
@@ -109,7 +114,8 @@ pub fn warnings(records: &Records) -> String {
     }
     let [warnings, notes] = all;
     let none = if warnings.is_empty() { paragraph("The program gave no warnings.") } else { String::new() };
-    let notes = if notes.is_empty() { String::new() } else { format!("<h3>Notes</h3>\n{}", list(&notes)) };
+    let head = format!("Notes ({})", notes.len());
+    let notes = part(&head, &list(&notes));
     chapter("Warnings", &format!("{none}<div class=\"warnings\">\n{}{notes}</div>\n", list(&warnings)))
 }
 

@@ -25,7 +25,10 @@ pub fn run_chapter(records: &Records) -> String {
     let row = |stage: &Value| -> Vec<Cell> {
         let is_dynamic = text(&stage["kind"]) == "dynamic";
         let time = if is_dynamic { plain(&stage["time"], "s", Three).into() } else { Cell::Empty };
+        let mechanism = text(&stage["failure"]["mechanism"]);
+        let early = if stage["ended_early"] == Value::Bool(true) { ", ended early" } else { "" };
         let end = match stage["converged"].as_bool() {
+            _ if !mechanism.is_empty() => Cell::from(format!("FAILED by {mechanism}{early}")),
             Some(true) => "at rest".into(),
             Some(false) => "NOT at rest".into(),
             None => Cell::from("end of its duration"),
@@ -49,6 +52,52 @@ pub fn run_chapter(records: &Records) -> String {
         part("Ends of the stages", &stage_figures(run)),
     ];
     chapter("Run of the stages", &content.concat())
+}
+
+/// Joints whose slip the first page has.
+const JOINTS: usize = 5;
+
+/// Where each dynamic stage has left the rock: permanent displacement, slip by joint, monitors.
+pub fn permanent_motions(run: &Value) -> String {
+    entries(&run["permanent"]).iter().map(permanent_motion).collect()
+}
+
+fn permanent_motion(motion: &Value) -> String {
+    let at = |place: &Value| {
+        let of = |k: usize| plain(&place[k], "", Three);
+        of(0).zip(of(1)).map_or(Cell::Empty, |(x, y)| Cell::Mixed(vec![("x ".to_owned(), x), (", y ".to_owned(), y)]))
+    };
+    let joint =
+        |slip: &Value| vec![text(&slip["joint"]).into(), length(&slip["slip"], Three).into(), at(&slip["place"])];
+    let joints: Vec<Vec<Cell>> = entries(&motion["joints"]).iter().take(JOINTS).map(joint).collect();
+    let monitor = |monitor: &Value| {
+        let along = |k: usize| length(&monitor["displacement"][k], Three).into();
+        vec![text(&monitor["name"]).into(), along(0), along(1)]
+    };
+    let monitors: Vec<Vec<Cell>> = entries(&motion["monitors"]).iter().map(monitor).collect();
+    let most = [
+        ("Permanent displacement, largest", length(&motion["displacement"], Three).into()),
+        ("of block", plain(&motion["block"], "", Digits::Typed).into()),
+        ("at (m)", at(&motion["place"])),
+    ];
+    let content = [
+        facts(&most),
+        table(&["Joint", "Largest slip", "at (m)"], &joints),
+        table(&["Monitor", "Permanent displacement x", "y"], &monitors),
+    ];
+    part(&format!("After the stage {}, since its start", text(&motion["stage"])), &content.concat())
+}
+
+/// The stage after which a factor holds: that of the record, or the last static one before the first dynamic one.
+pub fn stage_of_factor(record: &Value) -> Cell {
+    let named = text(&record["stage"]);
+    let statics = entries(&record["input"]["stages"]).iter().take_while(|stage| text(&stage["kind"]) == "static");
+    let last = statics.last().map_or("", |stage| text(&stage["name"]));
+    match (named, last) {
+        ("", "") => "not recorded".into(),
+        ("", last) => last.into(),
+        (named, _) => named.into(),
+    }
 }
 
 /// Pictures of the ends of the stages.
@@ -139,7 +188,7 @@ pub fn factor_chapter(records: &Records) -> String {
     };
     let rows = [
         ("Factor of safety F", factor_cell(json)),
-        ("After the stage", text(&json["stage"]).into()),
+        ("After the stage", stage_of_factor(json)),
         ("Greatest F at which the slope stands", plain(&bracket["stable"], "", Digits::Typed).into()),
         ("Least F at which it does not", plain(&bracket["unstable"], "", Digits::Typed).into()),
         ("Factor by limit analysis", limit_factor(&json["bound"])),
@@ -199,7 +248,7 @@ pub fn bound_chapter(records: &Records) -> String {
     let bound = &record.json["bound"];
     let rows = [
         ("Factor by limit analysis", side(&bound["level_tops"])),
-        ("After the stage", text(&record.json["stage"]).into()),
+        ("After the stage", stage_of_factor(&record.json)),
         ("Factor if joints dilate by their friction angle", side(&bound["associated"])),
         ("Factor if every corner holds", side(&bound["catching"])),
         ("Lower bound", side(&bound["lower"])),

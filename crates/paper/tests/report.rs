@@ -187,3 +187,45 @@ fn no_strength_of_the_input_is_left_out() {
         assert!(html.contains(head), "{head}");
     }
 }
+
+/// The record of a run of a slope that an earthquake has shaken.
+fn quake() -> Value {
+    json!({
+        "title": "Shaken", "version": "0.1.0", "case_file": "slope.toml", "case_hash": "0123456789abcdef",
+        "settings": [], "status": "finished", "failed": false,
+        "verdict": "the slope has not failed: largest displacement 0.0383 m in stage quake",
+        "stages": [{ "name": "quake", "kind": "dynamic", "time": 12.0, "converged": null, "failure": null }],
+        "permanent": [{
+            "stage": "quake", "displacement": 0.03829, "block": 3, "place": [50.66, 25.54],
+            "joints": [{ "joint": "joint[0]", "slip": 0.03837, "place": [47.88, 22.52] }],
+            "monitors": [{ "name": "crest", "place": [71.0, 49.5], "displacement": [-0.03098, -0.02187] }]
+        }],
+        "model": { "blocks": 11, "area": 4500.0, "mesh_size": 1.5 },
+        "bolts": [], "warnings": [], "notes": [], "input": input()
+    })
+}
+
+#[test]
+fn the_first_page_begins_with_the_verdict_and_has_what_an_earthquake_left() {
+    let folder = folder_with(&[("summary.json", &quake()), ("fos.json", &fos())]);
+    let html = html(folder.path());
+    let first = html.split("</header>").next().expect("a first page");
+    let places = ["Verdict", "the slope has not failed", "F after the stage", "joint[0]", "crest", "Date"];
+    let at = places.map(|text| first.find(text).unwrap_or_else(|| panic!("{text} is not on the first page")));
+    assert!(at.is_sorted(), "{at:?}");
+    for number in ["0.03829", "0.03837", "-0.03098", "-0.02187"] {
+        assert!(first.contains(&format!("<data value=\"{number}\">")), "{number}");
+    }
+    assert!(first.contains("F after the stage</th><td>gravity</td>"), "the record names none: the last static stage");
+}
+
+#[test]
+fn a_stage_that_failed_is_named_with_its_mechanism() {
+    let mut run = quake();
+    run["stages"][0] = json!({
+        "name": "gravity", "kind": "static", "time": 7.8, "converged": false, "ended_early": true,
+        "failure": { "mechanism": "toppling" }
+    });
+    let html = html(folder_with(&[("summary.json", &run)]).path());
+    assert!(html.contains("FAILED by toppling, ended early"));
+}

@@ -239,6 +239,22 @@ pub enum Note {
         /// Rows.
         rows: Vec<Fact>,
     },
+    /// Changes in the drawing that a reader may want to look up, of one kind.
+    Changes {
+        /// What has changed.
+        title: String,
+        /// Those that are listed.
+        rows: Vec<Fact>,
+        /// How many there are.
+        count: usize,
+    },
+    /// Whether the slope has failed, and how.
+    Verdict {
+        /// In one line.
+        text: String,
+        /// Whether it has failed.
+        failed: bool,
+    },
     /// The film is complete.
     End {
         /// `finished`, `interrupted`, or why it failed.
@@ -246,7 +262,7 @@ pub enum Note {
     },
 }
 
-/// A row of [`Note::Facts`].
+/// A row of [`Note::Facts`] or [`Note::Changes`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fact {
     /// What.

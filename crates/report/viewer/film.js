@@ -286,7 +286,7 @@ class Film {
   of(kind) {
     const found = this.notes.filter((note) => note.note === kind);
     // A resumed run warns again of what was known before.
-    const key = { stage: "number", warning: "text" }[kind];
+    const key = { stage: "number", warning: "text", changes: "title" }[kind];
     return key ? [...new Map(found.map((note) => [note[key], note])).values()] : found;
   }
 

@@ -214,6 +214,26 @@ function stagesSection(stages, end) {
   );
 }
 
+// What a run says of its slope, before all else.
+function verdictSection({ text, failed }) {
+  const made = section(failed ? "✕ The slope has failed" : "Verdict", element("p", {}, text));
+  made.id = "verdict";
+  made.className = failed ? "failed" : "";
+  return made;
+}
+
+// Changes in the drawing, folded: they are many, and few readers look for one.
+function changesSection(changes) {
+  const count = changes.reduce((sum, note) => sum + note.count, 0);
+  const tables = changes.flatMap(({ title, rows, count: all }) => [
+    element("h3", {}, rows.length < all ? `${title} (first ${rows.length} of ${all})` : `${title} (${all})`),
+    table(rows.map((row) => [row.name, row.value])),
+  ]);
+  const made = folded(`Notes on the drawing (${count})`, false, ...tables);
+  made.id = "changes";
+  return made;
+}
+
 function warningsSection(warnings) {
   const list = element("ul", {}, ...warnings.map(({ text }) => element("li", {}, text)));
   const made = folded(`Warnings (${warnings.length})`, true, list);
@@ -243,6 +263,8 @@ function panelSections(film, shown, toggle) {
     stages = film.of("stage");
   if (warnings.length) made.push(warningsSection(warnings));
   if (stages.length) made.push(stagesSection(stages, film.end));
+  const changes = film.of("changes");
+  if (changes.length) made.push(changesSection(changes));
   return made;
 }
 

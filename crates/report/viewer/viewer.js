@@ -97,6 +97,7 @@ class Viewer {
     };
     const held = by("panel").scrollTop;
     by("panel").replaceChildren(
+      ...this.film.of("verdict").slice(-1).map(verdictSection),
       element("section", { id: "choice" }),
       ...panelSections(this.film, this.marks, toggle),
       this.settingsSection(),

@@ -83,7 +83,9 @@ impl Film {
     }
 
     fn table(&mut self, title: &str, rows: impl Iterator<Item = (String, String)>) -> io::Result<()> {
-        let rows: Vec<Fact> = rows.take(ROWS).map(|(name, value)| Fact { name, value }).collect();
-        if rows.is_empty() { Ok(()) } else { self.note(0.0, &Note::Facts { title: title.to_owned(), rows }) }
+        let mut rows: Vec<Fact> = rows.map(|(name, value)| Fact { name, value }).collect();
+        let count = rows.len();
+        rows.truncate(ROWS);
+        if rows.is_empty() { Ok(()) } else { self.note(0.0, &Note::Changes { title: title.to_owned(), rows, count }) }
     }
 }

@@ -14,10 +14,12 @@ pub mod history;
 mod input;
 mod mechanism_page;
 mod model_page;
+pub mod motion;
 pub mod rock_mass;
 mod run;
 mod stereonet;
 pub mod summary;
+pub mod verdict;
 pub mod vtu;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};

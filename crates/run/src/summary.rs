@@ -14,6 +14,12 @@ use enmm_io::files::{at_path, write_atomic};
 use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::changes::{CrumbRecord, TraceEndRecord};
+use crate::motion::{FailureOfStage, PermanentMotion};
+
+/// How a stage ended in which the slope has failed.
+pub const FAILED: &str = "FAILED";
+/// How a dynamic stage ended in which the slope has not failed.
+pub const OVER: &str = "over";
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -43,12 +49,19 @@ pub struct Summary {
     pub settings: Vec<String>,
     /// How the run ended.
     pub status: RunStatus,
+    /// Whether the slope has failed in a stage.
+    pub failed: bool,
+    /// Whether the slope has failed, and how, in one line.
+    pub verdict: String,
     /// Numerical failure, if any.
     pub failure: Option<FailureRecord>,
     /// Size of the model.
     pub model: ModelCounts,
     /// Stages that have begun.
     pub stages: Vec<StageRecord>,
+    /// Where each dynamic stage has left the rock.
+    #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
+    pub permanent: Vec<PermanentMotion>,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -178,6 +191,12 @@ pub struct StageRecord {
     pub steps: u64,
     /// Whether a static stage came to rest; null for a dynamic one.
     pub converged: Option<bool>,
+    /// Whether a static stage ended before its time, because the slope had run away.
+    pub ended_early: bool,
+    /// Largest displacement of a block since the start of the stage (m), chips left out.
+    pub displacement: f64,
+    /// Failure of the slope in it; null where it has not failed.
+    pub failure: Option<FailureOfStage>,
     /// Wall time (s) in the process that writes this; null for a stage that ended before it went on from a checkpoint.
     pub wall_seconds: Option<f64>,
     /// Unbalanced ratio at its end.
@@ -190,6 +209,19 @@ pub struct StageRecord {
     pub unsettled: u64,
     /// Largest penetration at the reports of the stage (m).
     pub penetration_max: f64,
+}
+
+impl StageRecord {
+    /// How it ended, in words.
+    pub fn outcome(&self) -> String {
+        match (&self.failure, self.converged) {
+            (Some(failure), _) if self.ended_early => format!("{FAILED} by {}, ended early", failure.mechanism),
+            (Some(failure), _) => format!("{FAILED} by {}", failure.mechanism),
+            (None, Some(true)) => "at rest".to_owned(),
+            (None, Some(false)) => "NOT at rest".to_owned(),
+            (None, None) => OVER.to_owned(),
+        }
+    }
 }
 
 /// A free length of a bolt at the end of a run.
@@ -323,6 +355,9 @@ pub(super) struct RunRecord<'a> {
     pub status: RunStatus,
     pub failure: Option<&'a StepError>,
     pub stages: Vec<StageRecord>,
+    pub permanent: Vec<PermanentMotion>,
+    pub failed: bool,
+    pub verdict: String,
     pub ledger: &'a Ledger,
     pub wall: WallSeconds,
     pub warnings: Vec<String>,
@@ -341,9 +376,12 @@ impl Summary {
             case_hash: record.case_hash.to_owned(),
             settings: record.settings.to_vec(),
             status: record.status,
+            failed: record.failed,
+            verdict: record.verdict,
             failure: record.failure.map(FailureRecord::from),
             model: ModelCounts::of(simulation),
             stages: record.stages,
+            permanent: record.permanent,
             time: simulation.time(),
             steps: state.step,
             dt: StepSizes {
@@ -383,6 +421,11 @@ impl Summary {
             input: record.input,
             doubt: record.doubt,
         }
+    }
+
+    /// Whether the slope has failed in a static stage, so that there is no slope at rest.
+    pub fn failed_at_rest(&self) -> bool {
+        self.stages.iter().any(|stage| stage.kind == StageKind::Static && stage.failure.is_some())
     }
 
     /// Writes the summary as JSON, whole or not at all.

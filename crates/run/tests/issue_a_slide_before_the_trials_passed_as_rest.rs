@@ -27,14 +27,20 @@ fn bolts_that_a_stage_installs_hold_a_wedge_that_has_not_slid() {
     assert!(!found.warnings.iter().any(|warning| warning.contains("slip")), "{:?}", found.warnings);
 }
 
-/// `enmm run` said no more than that the stage was at rest.
+/// `enmm run` said no more than that the stage was at rest. Now the slide is a failure that ends the stage; one that is
+/// followed until other rock stops it is warned of.
 #[test]
 fn a_run_warns_of_a_slide_in_a_static_stage() {
     let mut case = weak_slide([28.0, 2e3]);
     case.stages.truncate(1);
     case.bolts.clear();
-    let summary = quiet_run(case, &mut ());
-    assert!(summary.warnings.iter().any(|warning| warning.contains("rock slid until other rock stopped it")));
+    let failed = quiet_run(case.clone(), &mut ());
+    assert!(failed.failed && failed.stages[0].ended_early, "{}", failed.verdict);
+    assert!(failed.verdict.starts_with("the slope failed in stage gravity by sliding"), "{}", failed.verdict);
+    case.solver.failure_displacement = Some(100.0);
+    let followed = quiet_run(case, &mut ());
+    assert!(!followed.failed && !followed.stages[0].ended_early, "{}", followed.verdict);
+    assert!(followed.warnings.iter().any(|warning| warning.contains("rock slid until other rock stopped it")));
 }
 
 /// The closed form of Hoek and Bray, F = (cA + W·cos ψ·tan φ)/(W·sin ψ), for H = 30 m, ψ = 35°, ψf = 60° and a crack of

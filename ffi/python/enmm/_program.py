@@ -20,7 +20,7 @@ from ._html import Record
 from ._library import _folders
 
 _VARIABLE = "ENMM_PROGRAM"
-BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 130
+BAD_INPUT, FAILED, SLOPE_FAILED, INTERRUPTED = 2, 3, 4, 130
 
 CaseLike = Case | str | os.PathLike[str] | Mapping[str, Any]
 """A case, the path of a case file, or the tables of one as a dict."""

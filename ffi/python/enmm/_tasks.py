@@ -14,7 +14,7 @@ from . import _html, _plots
 from ._closing import Closing
 from ._errors import EnmmError, Status, invalid
 from ._frames import Frames
-from ._program import FAILED, INTERRUPTED, CaseLike, call, case_file, failure, message_of, record
+from ._program import FAILED, INTERRUPTED, SLOPE_FAILED, CaseLike, call, case_file, failure, message_of, record
 from ._progress import Bar, in_notebook
 from ._table import Table
 
@@ -94,6 +94,16 @@ class Result(_Directory):
         return self
 
     @property
+    def failed(self) -> bool:
+        """Whether the slope has failed in any stage."""
+        return bool(self.summary["failed"])
+
+    @property
+    def verdict(self) -> str:
+        """Whether the slope has failed, and how, in one line: stage, mechanism, blocks, largest displacement, place."""
+        return str(self.summary["verdict"])
+
+    @property
     def checkpoint(self) -> Path:
         """The state at the end, from which `run(case, resume=...)` continues."""
         return self.directory / "checkpoint.enmm"
@@ -127,7 +137,8 @@ class Result(_Directory):
             )
             for stage in self.summary["stages"]
         ]
-        rows = [("status", self.summary["status"]), ("blocks", str(self.blocks.rows)), *stages]
+        verdict = [("verdict", self.verdict)] if "verdict" in self.summary else []
+        rows = [*verdict, ("status", self.summary["status"]), ("blocks", str(self.blocks.rows)), *stages]
         rows += [("warning", text) for text in self.summary.get("warnings", [])]
         return _html.facts(rows) + _html.picture(self.directory / "deformed.png", "The slope at the end of the run")
 
@@ -260,7 +271,7 @@ def run(
     from. `progress` shows how far the run is: by default in notebooks alone.
 
     Raises CaseError with file, line and key; RunError, with the results so far, when a run fails numerically or does
-    not come to a sound end.
+    not come to a sound end. A slope that fails raises nothing: see `Result.failed` and `Result.verdict`.
     """
     result = Result(None) if output is None else None
     directory = result.directory if result else Path(output or "")
@@ -276,7 +287,7 @@ def run(
 
         words += [] if show or bar.shown else ["--quiet"]
         status, _, error = call(["run", path, "--force", *words], show=show, hear=hear if bar.shown else None)
-    if status == 0:
+    if status in (0, SLOPE_FAILED):
         return result._read() if result else Result(directory)
     message = message_of(status, error) if error or not show else "the run failed; see the message above"
     if status not in (FAILED, INTERRUPTED) or not (directory / "summary.json").is_file():

@@ -12,11 +12,13 @@ use crate::film::{Film, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
 use crate::input::input_record;
-use crate::summary::{RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
+use crate::motion::{FailureOfStage, PermanentMotion};
+use crate::summary::{FAILED, RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
+use crate::verdict::Verdict;
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
 use enmm::model::bytes::BytesError;
-use enmm::model::case::{Integrator, Invalid, PictureKind, StageKind};
+use enmm::model::case::{Integrator, Invalid, StageKind};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::tables::{BlockId, Seconds};
 use enmm::model::{Event, EventKind, Ledger, Restless, Simulation, State, StepError, StepReport, settle};
@@ -59,9 +61,10 @@ struct Progress {
     unbalanced: f64,
     /// Ledger at the last report.
     ledger: Ledger,
-    /// Displacements of the covers at the start of this stage (m); empty where the state has them or no picture wants
-    /// them.
+    /// Displacements of the covers at the start of this stage (m); empty where the state has them.
     started: Vec<Vector>,
+    /// Where the dynamic stages that are over have left the rock.
+    permanent: Vec<PermanentMotion>,
 }
 
 impl Progress {
@@ -71,10 +74,11 @@ impl Progress {
     /// The first number that cannot.
     fn check(&self, state: &State) -> Result<(), Unfit> {
         let Self { done, unsettled_before, potential_start, row_sweeps, .. } = self;
-        let Self { penetration_max, unbalanced, ledger, started, .. } = self;
+        let Self { penetration_max, unbalanced, ledger, started, permanent, .. } = self;
         let stages = u64::from(state.stage);
         fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
         fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
+        fit::at_most("the number of records of motions", permanent.len() as u64, done.len() as u64)?;
         fit::number("potential_start", potential_start.unwrap_or_default(), fit::FORCE)?;
         fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
         fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
@@ -99,6 +103,8 @@ struct Saved<S = State> {
 /// How a stage ended.
 enum StageEnd {
     Over,
+    /// A static stage whose slope has run away, with the report of its last step.
+    RanAway(StepReport),
     Interrupted,
     Failed(StepError),
 }
@@ -217,7 +223,7 @@ impl<'a> Driver<'a> {
     fn run(&mut self, invalid: impl Fn(Invalid) -> RunError) -> Result<Summary, RunError> {
         loop {
             match self.run_stage()? {
-                StageEnd::Over => {}
+                StageEnd::Over | StageEnd::RanAway(_) => {}
                 StageEnd::Interrupted => return self.close(RunStatus::Interrupted, None),
                 StageEnd::Failed(error) => return self.fail(&error),
             }
@@ -234,10 +240,9 @@ impl<'a> Driver<'a> {
         self.progress.unsettled_before = self.simulation.state().counters.unsettled;
         self.progress.potential_start = None;
         self.progress.penetration_max = 0.0;
-        let (state, pictures) = (self.simulation.state(), &self.simulation.case().output.pictures);
+        let state = self.simulation.state();
         self.progress.started.clear();
-        let since = [PictureKind::Displacement, PictureKind::DisplacementContours];
-        if since.into_iter().any(|kind| pictures.include(kind)) && state.stage_displacement.is_empty() {
+        if state.stage_displacement.is_empty() {
             self.progress.started.clone_from(&state.displacement);
         }
         self.note_stage(None, "")
@@ -266,10 +271,11 @@ impl<'a> Driver<'a> {
         let plan = Plan::of(&self.simulation);
         let recorded = self.progress.done.len() > self.simulation.state().stage as usize;
         if recorded {
-            return self.end_stage(None, recorded);
+            return self.end_stage(None, recorded, false);
         }
         match settle::until_over(self, |driver| &driver.simulation, |driver| driver.pass(&plan)) {
-            Ok(last) => self.end_stage(last, recorded),
+            Ok(last) => self.end_stage(last, recorded, false),
+            Err(Ok(StageEnd::RanAway(last))) => self.end_stage(Some(last), recorded, true),
             Err(halt) => halt,
         }
     }
@@ -318,6 +324,9 @@ impl<'a> Driver<'a> {
         if row {
             self.write_row(&report, &before, dt_before, sweeps_mean).map_err(Err)?;
         }
+        if step.is_multiple_of(settle::RUNAWAY_STEPS) && self.simulation.has_run_away() {
+            return Err(Ok(StageEnd::RanAway(report)));
+        }
         Ok(rest_due.then_some(report))
     }
 
@@ -359,7 +368,7 @@ impl<'a> Driver<'a> {
     }
 
     /// Row and frame of the end of a stage, and its record; the step that the row needs is taken back.
-    fn end_stage(&mut self, last: Option<StepReport>, recorded: bool) -> Result<StageEnd, RunError> {
+    fn end_stage(&mut self, last: Option<StepReport>, recorded: bool, ended_early: bool) -> Result<StageEnd, RunError> {
         // Before the outputs, which give back the buffers with the contacts.
         let mut converged = last.is_some_and(|report| self.simulation.at_rest(&report));
         let restless = last.map_or_else(Vec::new, |report| self.simulation.restless(&report));
@@ -378,23 +387,38 @@ impl<'a> Driver<'a> {
         }
         self.simulation.return_to(&self.good.state);
         if !recorded {
-            self.warn_of_stage(converged, &restless)?;
-            let rests = self.simulation.stage().kind == StageKind::Static;
-            if rests {
-                self.outlook.end(self.simulation.time() - self.simulation.state().stage_start);
-            }
-            let outcome = if !rests {
-                "over"
-            } else if converged {
-                "at rest"
-            } else {
-                "NOT at rest"
-            };
-            self.note_stage(Some(self.simulation.time()), outcome).map_err(RunError::Output)?;
-            let record = self.stage_record(Some(converged));
-            self.progress.done.push(record);
+            self.record_stage(converged, ended_early, &restless)?;
         }
         Ok(StageEnd::Over)
+    }
+
+    /// Warns of what a stage has brought and records it. A slope that has failed in a static stage is saved at once.
+    fn record_stage(&mut self, converged: bool, ended_early: bool, restless: &[Restless]) -> Result<(), RunError> {
+        let record = StageRecord { ended_early, ..self.stage_record(Some(converged)) };
+        let is_static = record.kind == StageKind::Static;
+        if ended_early {
+            self.warn_of_early_end()?;
+        } else {
+            self.warn_of_stage(converged, restless)?;
+        }
+        if is_static {
+            self.outlook.end(self.simulation.time() - self.simulation.state().stage_start);
+        } else {
+            let motion = PermanentMotion::of(&self.simulation, &self.joints, self.began());
+            self.progress.permanent.push(motion);
+        }
+        // The table of stages on the page is narrow, and the verdict above it has the rest.
+        let outcome = if record.failure.is_some() { FAILED.to_owned() } else { record.outcome() };
+        self.note_stage(Some(self.simulation.time()), &outcome).map_err(RunError::Output)?;
+        let is_lost = is_static && record.failure.is_some();
+        self.progress.done.push(record);
+        if is_lost { self.save() } else { Ok(()) }
+    }
+
+    /// Displacements of the covers (m) at the start of the stage in progress.
+    fn began(&self) -> &[Vector] {
+        let of_state = &self.simulation.state().stage_displacement;
+        if of_state.is_empty() { &self.progress.started } else { of_state }
     }
 
     /// Warns of the first pairs of blocks that overlap, with the event of index `known` or a later one.
@@ -407,9 +431,19 @@ impl<'a> Driver<'a> {
     }
 
     fn draw_stage(&self) -> io::Result<()> {
-        let of_state = &self.simulation.state().stage_displacement;
-        let started = if of_state.is_empty() { &self.progress.started } else { of_state };
-        results::draw_stage(&self.simulation, &self.joints, started, &self.options.directory)
+        results::draw_stage(&self.simulation, &self.joints, self.began(), &self.options.directory)
+    }
+
+    /// Warns of a static stage that has run away.
+    fn warn_of_early_end(&mut self) -> Result<(), RunError> {
+        let (stage, limit) = (self.simulation.stage(), self.simulation.model().failure_displacement);
+        let (name, duration) = (&stage.name, stage.duration);
+        let time = self.simulation.time() - self.simulation.state().stage_start;
+        self.warn(format!(
+            "stage {name:?} ended early, after {time:.4} s of at most {duration} s: rock has moved by more than \
+             {limit} m and becomes no slower, so that it will not come to rest; raise solver.failure_displacement to \
+             follow it farther"
+        ))
     }
 
     fn warn_of_stage(&mut self, converged: bool, restless: &[Restless]) -> Result<(), RunError> {
@@ -499,6 +533,8 @@ impl<'a> Driver<'a> {
     fn stage_record(&self, converged: Option<bool>) -> StageRecord {
         let (stage, state, progress) = (self.simulation.stage(), self.simulation.state(), &self.progress);
         let potential = progress.ledger.potential;
+        let is_at_rest = stage.kind == StageKind::Dynamic || converged.unwrap_or(true);
+        let began = self.began();
         StageRecord {
             name: stage.name.clone(),
             kind: stage.kind,
@@ -506,6 +542,9 @@ impl<'a> Driver<'a> {
             time: self.simulation.time() - state.stage_start,
             steps: state.stage_step,
             converged: converged.filter(|_| stage.kind == StageKind::Static),
+            ended_early: false,
+            displacement: self.simulation.farthest_since(began).map_or(0.0, |farthest| farthest.displacement),
+            failure: self.simulation.failure_since(began, is_at_rest).map(FailureOfStage::from),
             wall_seconds: Some(self.stage_clock.elapsed().as_secs_f64()),
             unbalanced: progress.unbalanced,
             kinetic_energy: progress.ledger.kinetic,
@@ -585,6 +624,10 @@ impl<'a> Driver<'a> {
         let ended = status == RunStatus::Finished;
         let doubt = self.simulation.doubt(&self.progress.ledger).filter(|_| ended);
         self.warnings.extend(doubt.clone());
+        let verdict = Verdict::of(&stages, status);
+        let time = self.simulation.time();
+        let note = Note::Verdict { text: verdict.text.clone(), failed: verdict.failed };
+        self.film.note(time, &note).map_err(RunError::Output)?;
         self.close_film(status, failure, doubt.as_ref()).map_err(RunError::Output)?;
         let record = RunRecord {
             case_file: self.loaded.source.file(),
@@ -593,6 +636,9 @@ impl<'a> Driver<'a> {
             status,
             failure,
             stages,
+            permanent: self.progress.permanent.clone(),
+            failed: verdict.failed,
+            verdict: verdict.text,
             ledger: &self.progress.ledger,
             wall: self.wall(),
             warnings: std::mem::take(&mut self.warnings),
