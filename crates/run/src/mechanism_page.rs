@@ -168,7 +168,10 @@ fn trials(search: &Reduction, name: &str) -> TrialTable {
     };
     let mechanism = if name.is_empty() { String::new() } else { format!("mechanism{name}: ") };
     let others: String = search.others().into_iter().map(|(name, text)| format!("; {name}: {text}")).collect();
-    TrialTable { result: format!("{mechanism}{result}{others}; {bound}"), trials: search.trials.iter().map(row).collect() }
+    TrialTable {
+        result: format!("{mechanism}{result}{others}; {bound}"),
+        trials: search.trials.iter().map(row).collect(),
+    }
 }
 
 fn row(trial: &Trial) -> Row {

@@ -153,7 +153,10 @@ impl<'a> Rounds<'a> {
     /// All positions of points once.
     fn places(&self) -> impl Iterator<Item = Point> {
         let at = |k: EdgeId| self.boundary.reference[k];
-        self.order.chunk_by(move |&a, &b| key(at(a)) == key(at(b))).filter(|group| group.len() > 1).map(move |g| at(g[0]))
+        self.order
+            .chunk_by(move |&a, &b| key(at(a)) == key(at(b)))
+            .filter(|group| group.len() > 1)
+            .map(move |g| at(g[0]))
     }
 
     fn direction(&self, edge: EdgeId) -> Vector {
@@ -186,7 +189,10 @@ impl<'a> Rounds<'a> {
         let [last] = gaps[..] else { return Vec::new() };
         let round: Vec<Sector> = (0..n).map(|k| sectors[(last + 1 + k) % n]).collect();
         let back: Vec<Sector> = round.iter().rev().copied().collect();
-        [(round, Turn::Counter), (back, Turn::Clockwise)].into_iter().filter_map(|(round, turn)| foot(&round, turn)).collect()
+        [(round, Turn::Counter), (back, Turn::Clockwise)]
+            .into_iter()
+            .filter_map(|(round, turn)| foot(&round, turn))
+            .collect()
     }
 
     fn corners_at(&self, place: Point) -> Vec<CornerContact> {

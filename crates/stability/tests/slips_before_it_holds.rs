@@ -57,7 +57,10 @@ fn a_slab_holds_as_soon_as_its_toe_is_pressed_together() {
     println!("{factor} of {bound}: {:?}", reduction.trials);
     assert!((factor / bound - 1.0).abs() < 0.015, "{factor} of {bound}");
     let stable = reduction.trials.iter().filter(|t| t.verdict == Verdict::Stable);
-    assert!(stable.clone().count() > 0 && stable.clone().all(|t| t.slip > 0.03 && t.failing.is_empty()), "it must slip");
+    assert!(
+        stable.clone().count() > 0 && stable.clone().all(|t| t.slip > 0.03 && t.failing.is_empty()),
+        "it must slip"
+    );
     assert!(stable.clone().all(|t| t.is_far && t.word().starts_with("rests after 0.")));
     assert!(reduction.warnings.iter().any(|w| w.contains("rests only after")), "{:?}", reduction.warnings);
 }

@@ -18,9 +18,9 @@ mod way;
 use enmm::geometry::{Point, Vector};
 use enmm::model::tables::{BlockId, Outlines};
 
+use crate::corners::{CornerContact, corner_contacts};
 use contact::Contact;
 use corner::Corner;
-use crate::corners::{CornerContact, corner_contacts};
 use enmm::model::Simulation;
 use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
@@ -266,7 +266,12 @@ impl Bound {
             )
         };
         let free = self.released.as_ref().map(|released| {
-            row("corners_free", "corners carry nothing", &released.collapse, "upper bound without corners that meet rock ahead")
+            row(
+                "corners_free",
+                "corners carry nothing",
+                &released.collapse,
+                "upper bound without corners that meet rock ahead",
+            )
         });
         let (first, later) = if self.carrying().is_empty() { (None, free) } else { (free, None) };
         let mut rows: Vec<Row<'_>> = first.into_iter().collect();
@@ -319,7 +324,8 @@ impl Bound {
         };
         let bare = bare.unwrap_or_default();
         let free = self.released.as_ref().filter(|_| !self.carrying().is_empty());
-        let free = free.map(|free| format!("{} where corners carry nothing, ", free.collapse.factor)).unwrap_or_default();
+        let free =
+            free.map(|free| format!("{} where corners carry nothing, ", free.collapse.factor)).unwrap_or_default();
         format!("upper bound {free}{level} where level tops pass, {associated} associated{bare}; {estimate}")
     }
 
@@ -385,8 +391,7 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         level_tops: collapse(&choice.limit),
         least: choice.least,
         catching: collapse(&catching),
-        released: free_corners
-            .map(|free| ReleasedCorners { collapse: collapse(&free.limit), corners: free.corners }),
+        released: free_corners.map(|free| ReleasedCorners { collapse: collapse(&free.limit), corners: free.corners }),
         bare: opened.map(|o| Bare { collapse: collapse(&o.limit), share: o.share, interfaces: o.contacts }),
         estimate: estimated.as_ref().map(collapse),
         blocks: [program.bodies.iter().filter(|body| !body.is_gone).count(), free],

@@ -4,11 +4,11 @@ use enmm::geometry::Point;
 
 use crate::corners::CornerContact;
 
+use super::RANGE;
 use super::contact::Contact;
 use super::corner::Corner;
 use super::program::{Program, Unsolved};
 use super::search::{Limit, Search};
-use super::RANGE;
 
 /// A limit without corner contacts that would carry more than the rock over their length bears.
 pub struct Released {

@@ -75,7 +75,11 @@ impl Reduction {
         }
         if let (Some(before), Some(factor)) = (self.before_nudges, self.factor()) {
             let spread = 100.0 * (before / factor - 1.0);
-            let text = if spread.abs() < SAME { "change nothing".to_owned() } else { format!("{before:.4} before them, {spread:.1} % more") };
+            let text = if spread.abs() < SAME {
+                "change nothing".to_owned()
+            } else {
+                format!("{before:.4} before them, {spread:.1} % more")
+            };
             others.push(("nudges", text));
         }
         others

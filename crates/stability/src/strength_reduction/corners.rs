@@ -5,9 +5,9 @@ use super::series::Series;
 use super::setting::Setting;
 use super::slip::height_and_gravity;
 use super::{ReductionOptions, Trial, Verdict};
-use enmm::model::case::CornerContacts;
 use crate::corners::{CornerContact, corner_contacts};
 use enmm::model::Simulation;
+use enmm::model::case::CornerContacts;
 
 /// Share of the weight that moves from which the force of corners counts.
 const COUNTS: f64 = 0.02;
@@ -53,7 +53,8 @@ pub fn carrying(base: &Simulation, searches: &[&Series]) -> Vec<CarryingCorner> 
     let corners = corner_contacts(base).into_iter().map(with_force);
     let crushed: Vec<CarryingCorner> = corners.filter(|held| held.force >= held.corner.capacity()).collect();
     let (_, gravity) = height_and_gravity(base);
-    let moving = searches.iter().filter_map(|search| search.trial(search.high)).map(Trial::failing_mass).reduce(f64::max);
+    let moving =
+        searches.iter().filter_map(|search| search.trial(search.high)).map(Trial::failing_mass).reduce(f64::max);
     let mass = |corner: &CarryingCorner| moving.unwrap_or(base.model().mass_matrix.total[corner.corner.block]);
     let carries = |corner: &CarryingCorner| corner.force > COUNTS * gravity * mass(corner);
     let counts = choice == Some(CornerContacts::Break) || crushed.iter().any(carries);

@@ -1,9 +1,9 @@
 //! The limit in the real geometry, beyond which a slope is lost (theory, section 16).
 
+use super::Verdict;
 use super::bracket::Search;
 use super::series::{Series, Trials};
 use super::setting::{Geometry, Setting};
-use super::Verdict;
 
 /// Displacement over that of the slope at rest up to which its real geometry is that of the drawing.
 const AS_DRAWN: f64 = 2.0;

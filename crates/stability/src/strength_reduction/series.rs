@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::bracket::Search;
 use super::setting::Setting;
-use super::trial::{Base, Stop};
+use super::trial::{Base, Outcome, Stop};
 use super::{End, Progress, Trial, Verdict};
 use enmm::model::Simulation;
 
@@ -62,9 +62,6 @@ pub struct Trials<'a> {
     /// Trials so far.
     pub made: usize,
 }
-
-/// A trial with the model at its end.
-pub type Outcome = Result<(Trial, Simulation), Stop>;
 
 impl Trials<'_> {
     /// Goes on with a search in a setting until it is over.

@@ -5,10 +5,10 @@ use enmm::model::tables::BlockId;
 use enmm::model::{Mechanism, Simulation};
 
 use super::bracket::Search;
-use super::series::{Outcome, Series, Trials};
+use super::series::{Series, Trials};
 use super::setting::Setting;
 use super::slip::height_and_gravity;
-use super::trial::Base;
+use super::trial::{Base, Outcome};
 use super::{End, FailingBlock, Reason, Trial, Verdict};
 
 /// Acceleration of a nudge over that of gravity.

@@ -6,7 +6,6 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
-use super::series::Outcome;
 use super::setting::Setting;
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
@@ -42,6 +41,9 @@ pub enum Stop {
     /// A numerical failure before anything had failed.
     Failed(StepError),
 }
+
+/// A trial with the model at its end.
+pub type Outcome = Result<(Trial, Simulation), Stop>;
 
 /// What is done to a slope while its motion is followed.
 pub enum Course {
