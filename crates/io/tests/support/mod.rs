@@ -246,6 +246,7 @@ contact_theta = 4.0
 mass_scaling = 1.0
 contact_tolerance = 0.01
 friction_delay = 0.01
+corner_contacts = "hold"
 sweeps_max = 12
 penetration_limit = 0.5
 implicit_step = 0.01
