@@ -8,6 +8,7 @@ use enmm::geometry::Point;
 use enmm::model::assemble::{Breaking, Bridge, ignored_traces};
 use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
+use enmm_stability::corners::weak_corners;
 
 use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::rock_mass::{RockMass, rock_masses};
@@ -112,9 +113,29 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         crumbs: CrumbRecord::all(built),
         rock_masses: rock_masses(simulation.case()),
         bridges: built.bridges.iter().map(BridgeRecord::of).collect(),
-        notes: built.notes.clone(),
+        notes: built.notes.iter().cloned().chain(corner_note(simulation)).collect(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
+}
+
+/// Corners of the last stage that meet rock ahead of them: they may carry the slope.
+fn corner_note(simulation: &Simulation) -> Option<String> {
+    let digs = simulation.case().stages.iter().any(|s| !s.excavate.is_empty() || s.excavate_region.is_some());
+    let corners = if digs {
+        let mut last = simulation.clone();
+        while last.next_stage().is_ok_and(|goes_on| goes_on) {}
+        weak_corners(&last)
+    } else {
+        weak_corners(simulation)
+    };
+    let places: Vec<String> = corners.iter().map(|c| format!("{} {}", c.text(), c.over())).collect();
+    (!places.is_empty()).then(|| {
+        format!(
+            "corners meet rock ahead of them: {}; rock crushes there before it holds a slope, and `enmm fos` and \
+             `enmm bound` give the factor without them where they carry it",
+            places.join(", ")
+        )
+    })
 }
 
 fn default_stiffness(simulation: &Simulation) -> Option<f64> {

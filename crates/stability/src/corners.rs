@@ -38,6 +38,18 @@ impl CornerContact {
         (self.ends[1] - self.ends[0]).norm()
     }
 
+    /// Block and place.
+    pub fn text(&self) -> String {
+        let at = self.ends[0];
+        format!("block {} at ({:.3}, {:.3}) m", self.block, at.x, at.y)
+    }
+
+    /// The length in words: `in a point`, `over 10.0 mm`.
+    pub fn over(&self) -> String {
+        let length = self.length();
+        if length > 0.0 { format!("over {:.1} mm", 1e3 * length) } else { "in a point".to_owned() }
+    }
+
     /// Force (N/m) that the rock of this length bears.
     pub fn capacity(&self) -> f64 {
         self.length() * self.strength
@@ -53,6 +65,53 @@ impl CornerContact {
         let contacts = simulation.state().contacts.iter().filter(|c| is_own(block(c.node), c.side));
         contacts.map(|contact| contact.normal_force).sum()
     }
+}
+
+/// Share of the weight that moves from which the force of a corner counts.
+pub const COUNTS: f64 = 0.02;
+
+/// A corner contact with its force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CarryingCorner {
+    /// The corner contact.
+    pub corner: CornerContact,
+    /// Normal force (N/m).
+    pub force: f64,
+}
+
+impl CarryingCorner {
+    /// Block, place, length and force.
+    pub fn text(&self) -> String {
+        let force = self.force / 1e3;
+        format!("{} carries {force:.0} kN/m {}", self.corner.text(), self.corner.over())
+    }
+}
+
+/// Corner contacts that carry more in the last step than the rock over their length bears, and more than a little of
+/// the weight of their block.
+pub fn carrying_corners(simulation: &Simulation) -> Vec<CarryingCorner> {
+    let with_force = |corner: CornerContact| CarryingCorner { force: corner.force(simulation), corner };
+    let carries = |carrying: &CarryingCorner| {
+        let corner = &carrying.corner;
+        carrying.force >= corner.capacity() && carrying.force > COUNTS * weight(simulation, corner.block)
+    };
+    corner_contacts(simulation).into_iter().map(with_force).filter(carries).collect()
+}
+
+/// Distance over the mesh size within which ends of joints are taken for drawn on a line.
+const DRAWN: f64 = 0.1;
+
+/// Corner contacts of the drawing in a point, or over a length that may be an error of the drawing and that does not
+/// bear the weight of their block.
+pub fn weak_corners(simulation: &Simulation) -> Vec<CornerContact> {
+    let drawn = DRAWN * simulation.model().covers.mesh.size;
+    let is_weak = |c: &CornerContact| c.length() < drawn && c.capacity() < weight(simulation, c.block);
+    corner_contacts(simulation).into_iter().filter(is_weak).collect()
+}
+
+/// Weight (N/m) of a block.
+fn weight(simulation: &Simulation, block: BlockId) -> f64 {
+    simulation.model().mass_matrix.total[block] * simulation.acceleration().norm()
 }
 
 /// The corner contacts of the drawing with the blocks that are there.

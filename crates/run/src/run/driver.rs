@@ -26,6 +26,7 @@ use enmm_io::LoadedCase;
 use enmm_io::checkpoint;
 use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note, Quantity};
+use enmm_stability::corners::{CarryingCorner, carrying_corners};
 use enmm_stability::strength_reduction::slide;
 
 use super::outlook::Outlook;
@@ -402,6 +403,7 @@ impl<'a> Driver<'a> {
             self.warn_of_stage(converged, restless)?;
         }
         if is_static {
+            self.warn_of_corners()?;
             self.outlook.end(self.simulation.time() - self.simulation.state().stage_start);
         } else {
             let motion = PermanentMotion::of(&self.simulation, &self.joints, self.began());
@@ -509,6 +511,19 @@ impl<'a> Driver<'a> {
             "stage {name:?}: joints have slipped by up to {slip:.4} m; how far a shaken slope slips depends on the \
              mesh, slips of millimetres by several times: compare with a run on half the mesh size (--set \
              mesh.size={half})"
+        ))
+    }
+
+    /// Warns of corners that carry more than rock bears.
+    fn warn_of_corners(&mut self) -> Result<(), RunError> {
+        let corners: Vec<String> = carrying_corners(&self.simulation).iter().map(CarryingCorner::text).collect();
+        if corners.is_empty() {
+            return Ok(());
+        }
+        let (name, corners) = (&self.simulation.stage().name, corners.join(", "));
+        self.warn(format!(
+            "stage {name:?}: {corners}, which is more than the rock bears there: `enmm fos` has the factor without \
+             corners that meet rock ahead of them"
         ))
     }
 

@@ -302,8 +302,7 @@ impl Bound {
 
     /// That corners carry the slope.
     fn corners_warning(&self) -> Option<String> {
-        let place = |c: &CornerContact| format!("block {} at ({:.3}, {:.3}) m", c.block, c.ends[0].x, c.ends[0].y);
-        let places: Vec<String> = self.carrying().iter().map(place).collect();
+        let places: Vec<String> = self.carrying().iter().map(CornerContact::text).collect();
         let without = self.released.as_ref()?.collapse.factor;
         (!places.is_empty()).then(|| {
             format!(

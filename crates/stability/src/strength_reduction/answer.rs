@@ -1,8 +1,9 @@
 //! The factors of a search in words.
 
-use super::corners::{CarryingCorner, CornersHold};
+use super::corners::CornersHold;
 use super::series::Series;
 use super::{Reduction, Trial, Verdict};
+use crate::corners::CarryingCorner;
 
 /// Digits by which two factors differ: less is the same factor in a text.
 const SAME: f64 = 5e-5;
@@ -19,16 +20,6 @@ impl Series {
             (_, None, Some(high), _) => format!("below {high:.4}"),
             _ => "none".to_owned(),
         }
-    }
-}
-
-impl CarryingCorner {
-    /// Block, place, length and force.
-    pub fn text(&self) -> String {
-        let ([at, _], length) = (self.corner.ends, self.corner.length());
-        let over = if length > 0.0 { format!("over {:.1} mm", 1e3 * length) } else { "in a point".to_owned() };
-        let force = self.force / 1e3;
-        format!("block {} at ({:.3}, {:.3}) m carries {force:.0} kN/m {over}", self.corner.block, at.x, at.y)
     }
 }
 

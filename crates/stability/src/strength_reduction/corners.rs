@@ -5,21 +5,9 @@ use super::series::Series;
 use super::setting::Setting;
 use super::slip::height_and_gravity;
 use super::{ReductionOptions, Trial, Verdict};
-use crate::corners::{CornerContact, corner_contacts};
+use crate::corners::{COUNTS, CarryingCorner, CornerContact, corner_contacts};
 use enmm::model::Simulation;
 use enmm::model::case::CornerContacts;
-
-/// Share of the weight that moves from which the force of corners counts.
-const COUNTS: f64 = 0.02;
-
-/// A corner contact that carries the slope, with its force.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CarryingCorner {
-    /// The corner contact.
-    pub corner: CornerContact,
-    /// Normal force (N/m) in the greatest stable trial in which it holds.
-    pub force: f64,
-}
 
 /// Corners that carry the slope, and its trials where they hold.
 #[derive(Debug, Clone)]

@@ -1,7 +1,8 @@
 //! Doubts about a factor of safety that follow from its trials.
 
-use super::corners::{CarryingCorner, CornersHold};
+use super::corners::CornersHold;
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
+use crate::corners::CarryingCorner;
 use crate::limit_analysis::Bound;
 use crate::limit_analysis::continuum::Bracket;
 use enmm::model::case::{Case, Rock};

@@ -25,7 +25,7 @@ use super::limit_analysis::{self, Bound, BoundError};
 use enmm::model::case::{Case, Invalid};
 use enmm::model::{ExplicitAlone, Integrators, Mechanism, Simulation};
 
-pub use corners::{CarryingCorner, CornersHold};
+pub use corners::CornersHold;
 pub use judge::{Reason, Verdict};
 pub use mechanism::{CHIP, MechanismOptions, mechanisms};
 pub use series::Series;
