@@ -104,7 +104,8 @@ impl Simulation {
         }
     }
 
-    /// The way in which some blocks have moved since their covers had other displacements (m); none where nothing moves.
+    /// The way in which some blocks have moved since their covers had other displacements (m); none where nothing
+    /// moves.
     pub fn mechanism_since(&self, began: &[Vector], blocks: &[BlockId]) -> Option<Mechanism> {
         let of_these = self.blocks_since(began).into_iter().filter(|body| blocks.contains(&body.block));
         let motions: Vec<RigidMotion> = of_these.map(|body| body.motion).collect();

@@ -137,8 +137,8 @@ impl Simulation {
         self.workspace.selection.kept_gaps = Some(Vec::new());
     }
 
-    /// Leaves out the contacts of nodes of a block with a side, as often as there are pairs, in later steps. A new stage
-    /// or another state ends this.
+    /// Leaves out the contacts of nodes of a block with a side, as often as there are pairs, in later steps. A new
+    /// stage or another state ends this.
     pub fn leave_out(&mut self, mut contacts: Vec<(BlockId, SideId)>) {
         contacts.sort_unstable();
         self.workspace.selection.left_out = contacts;

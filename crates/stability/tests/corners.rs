@@ -1,5 +1,5 @@
-//! Claim: a corner that meets rock ahead of it in a point, or over a length that the rock cannot bear, carries no slope:
-//! the factor is that of the plane on which the block stands. Corners that only look so are left alone.
+//! Claim: a corner that meets rock ahead of it in a point, or over a length that the rock cannot bear, carries no
+//! slope: the factor is that of the plane on which the block stands. Corners that only look so are left alone.
 
 use std::path::Path;
 

@@ -57,7 +57,8 @@ pub fn without(corners: &[CarryingCorner], setting: &Setting) -> Setting {
     Setting { left_out, ..setting.clone() }
 }
 
-/// Where a search begins that cannot end above another: at its own beginning, and at the greatest stable factor of that.
+/// Where a search begins that cannot end above another: at its own beginning, and at the greatest stable factor of
+/// that.
 pub fn below(held: &Series, search: &Search, options: &ReductionOptions, range: [f64; 2]) -> Search {
     let top = held.low.unwrap_or(range[0]);
     let [first, _] = bracket::start(options.low, options.high, range);

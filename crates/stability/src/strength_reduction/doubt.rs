@@ -135,8 +135,8 @@ impl CornersHold {
     fn doubt(&self) -> String {
         let corners: Vec<String> = self.corners.iter().map(CarryingCorner::text).collect();
         format!(
-            "corners that meet rock ahead of them carry the slope: {}, which is more than rock of {:.0} MPa bears there; \
-             the factor is that without them, {} with them; solver.corner_contacts = \"hold\" counts them",
+            "corners that meet rock ahead of them carry the slope: {}, which is more than rock of {:.0} MPa bears \
+             there; the factor is that without them, {} with them; solver.corner_contacts = \"hold\" counts them",
             corners.join(", "),
             self.corners.iter().map(|corner| corner.corner.strength).fold(f64::INFINITY, f64::min) / 1e6,
             self.series.text()

@@ -96,8 +96,8 @@ pub fn coarse(base: &Base, series: &Series) -> Option<String> {
     let narrow = moving.map(|block| width(simulation, block)).fold(f64::INFINITY, f64::min);
     (narrow < wanted * size).then(|| {
         format!(
-            "blocks turn that are {:.1} elements wide ({narrow:.3} m, mesh {size:.3} m): their factor can be 5 % too high \
-             below {wanted} elements; set mesh.size to {:.3} m",
+            "blocks turn that are {:.1} elements wide ({narrow:.3} m, mesh {size:.3} m): their factor can be 5 % too \
+             high below {wanted} elements; set mesh.size to {:.3} m",
             narrow / size,
             narrow / wanted
         )

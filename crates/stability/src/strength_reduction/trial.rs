@@ -47,8 +47,8 @@ pub type Outcome = Result<(Trial, Simulation), Stop>;
 
 /// What is done to a slope while its motion is followed.
 pub enum Course {
-    /// Its strength falls to that of a trial, from [`Course::DEPTH`] times that, by equal ratios in equal times, so that
-    /// joints take up their load one after the other and nothing is thrown (Eq. 60a).
+    /// Its strength falls to that of a trial, from [`Course::DEPTH`] times that, by equal ratios in equal times, so
+    /// that joints take up their load one after the other and nothing is thrown (Eq. 60a).
     Fall {
         /// Strength factor at its end.
         end: f64,
