@@ -275,13 +275,15 @@ def test_messages_reach_the_host(package, incline):
     assert [level for level, _, _ in lines] == [package.LogLevel.INFO]
     assert "initial equilibrium" in lines[0][1]
     incline.do_step(0.0, 1.0)
-    assert len(lines) == 1 + len(incline.events()) and all(time == 1.0 for _, _, time in lines[1:])
+    # The start, each event, and that the slope has failed.
+    assert len(lines) == 2 + len(incline.events()) and all(time == 1.0 for _, _, time in lines[1:])
     assert any("block 1 moved beyond the failure displacement" in message for _, message, _ in lines)
+    assert "the slope has failed by sliding: 1 block" in lines[-1][1]
     incline.set_log(None)
     incline.do_step(incline.time, 0.1)
     with pytest.raises(package.TimeError):
         incline.do_step(0.0, 0.1)
-    assert len(lines) == 1 + len(incline.events())
+    assert len(lines) == 2 + len(incline.events())
 
 
 def test_a_failed_step_is_logged_as_an_error(package, incline):

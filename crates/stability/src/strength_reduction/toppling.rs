@@ -6,7 +6,7 @@ use enmm::model::{Mechanism, Simulation};
 
 use super::bracket::Search;
 use super::series::{Series, Trials};
-use super::setting::Setting;
+use super::setting::{Geometry, Setting};
 use super::slip::height_and_gravity;
 use super::trial::{Base, Outcome};
 use super::{End, FailingBlock, Reason, Trial, Verdict};
@@ -23,10 +23,13 @@ const ELEMENTS: f64 = 3.0;
 /// The same where rock yields.
 const ELEMENTS_YIELDING: f64 = 6.0;
 
-/// Nudges the greatest stable trial where the blocks that fail turn, and goes down where it fails. Returns the search
+/// Nudges the greatest stable trial where the blocks that fail turn, in the geometry as drawn, and goes down where it fails. Returns the search
 /// with the bracket that nudges leave, and the factor before them.
 pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search: &Search) -> (Series, Option<f64>) {
-    let Some(before) = series.factor().filter(|_| turns(trials.base, &series)) else { return (series, None) };
+    let are_blocks = setting.geometry == Geometry::Drawn;
+    let Some(before) = series.factor().filter(|_| are_blocks && turns(trials.base, &series)) else {
+        return (series, None);
+    };
     let outward = outward(series.trial(series.high));
     let (base, interrupt) = (trials.base, trials.interrupt);
     let nudged = |outcome: Outcome| -> Outcome {
@@ -64,6 +67,8 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
     let found = trials.series_of(down, &|factor| nudged(base.run(factor, setting, interrupt)));
     let Series { trials, low, high, end, stable, unstable } = found;
     replace(&mut series, trials, unstable);
+    // Trials above the bracket rested, but nobody has nudged them.
+    series.trials.retain(|trial| trial.verdict != Verdict::Stable || Some(trial.factor) <= low);
     (Series { low, high, end, stable, ..series }, Some(before))
 }
 

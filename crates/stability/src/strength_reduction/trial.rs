@@ -6,7 +6,7 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
-use super::setting::Setting;
+use super::setting::{Geometry, Setting};
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
 use enmm::geometry::Vector;
@@ -180,34 +180,40 @@ impl Base {
     /// Follows the motion of a model while a course acts on it for a `time` (s), and judges it.
     fn follow(
         &self,
-        before: Trial,
+        begun_as: Trial,
         mut simulation: Simulation,
         course: &Course,
         time: f64,
         interrupt: Option<&AtomicBool>,
     ) -> Outcome {
         let clock = Instant::now();
-        let scales = self.scales.of(time, before.geometry);
+        let scales = self.scales.of(time, begun_as.geometry);
         let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
         let mut positions = self.positions(&simulation);
         let steps = simulation.steps_in(scales.window);
-        let mut first = None;
-        let (mut judged, mut last) = (None, StepReport::default());
+        let (mut first, mut residual) = (None, 0.0);
+        let mut judged = None;
         while judged.is_none() {
-            match window(&mut simulation, steps, |model| course.act(model, model.time() - start, time), interrupt)? {
-                Ok(report) => last = report,
-                Err(error) => {
-                    judged = Some(given_up(&samples, &scales).ok_or(Stop::Failed(error))?);
-                    break;
-                }
-            }
+            let last =
+                match window(&mut simulation, steps, |model| course.act(model, model.time() - start, time), interrupt)?
+                {
+                    Ok(report) => report,
+                    Err(error) => {
+                        judged = Some(given_up(&samples, &scales).ok_or(Stop::Failed(error))?);
+                        break;
+                    }
+                };
             let first = *first.get_or_insert(last.ledger);
             let before = std::mem::replace(&mut positions, self.positions(&simulation));
             let few = self.few(&simulation);
             let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
             let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
             let sample = self.sample(&simulation, &last, &first, way, &few);
+            // In small displacements the ledger is exact to the first order of turns alone.
+            if begun_as.geometry == Geometry::Real || sample.displacement <= self.far {
+                residual = last.ledger.residual_relative();
+            }
             samples.push(Sample { time: simulation.time() - start, ..sample });
             judged = judge::judge(&samples, &scales);
         }
@@ -216,7 +222,7 @@ impl Base {
         let trial = Trial {
             verdict,
             reason,
-            time: before.time + end.time,
+            time: begun_as.time + end.time,
             displacement: end.displacement,
             slip: end.slip,
             speed: end.speed,
@@ -227,10 +233,10 @@ impl Base {
             loose: self.loose(&simulation),
             is_far: end.displacement > self.far && !stretches(&simulation),
             bars_yield: yields(&simulation),
-            steps: before.steps + simulation.state().step - begun,
-            ledger_residual: last.ledger.residual_relative(),
-            wall: before.wall + clock.elapsed().as_secs_f64(),
-            ..before
+            steps: begun_as.steps + simulation.state().step - begun,
+            ledger_residual: residual,
+            wall: begun_as.wall + clock.elapsed().as_secs_f64(),
+            ..begun_as
         };
         Ok((trial, simulation))
     }
