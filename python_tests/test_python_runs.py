@@ -183,13 +183,13 @@ def test_failed_runs_keep_their_results(package, case, tmp_path):
 
 def test_a_slope_that_fails_in_a_static_stage_is_a_result(package, case, tmp_path):
     weak = case.with_values(
-        {"joint_law.plane.friction_deg": 10.0, "stage": [{"name": "rest", "kind": "static", "duration": 20.0}]}
+        {"joint_law.joint.friction_deg": 10.0, "stage": [{"name": "rest", "kind": "static", "duration": 20.0}]}
     )
     result = package.run(weak, tmp_path / "out")
     assert result.failed and result.verdict.startswith("the slope failed in stage rest by sliding: 1 block")
     assert result.summary["status"] == "finished" and result.summary["stages"][0]["ended_early"]
     assert result.verdict in result._repr_html_()
-    at_rest = package.run(weak.with_values({"joint_law.plane.friction_deg": 60.0}), tmp_path / "rest")
+    at_rest = package.run(weak.with_values({"joint_law.joint.friction_deg": 60.0}), tmp_path / "rest")
     assert not at_rest.failed and at_rest.verdict.startswith("the slope has not failed")
 
 
@@ -218,7 +218,8 @@ def test_factor_of_safety_of_a_block_is_the_closed_form(package, case):
 def test_a_search_lets_a_caller_hear_its_trials(package, case):
     heard = []
     with package.fos(case, pictures=False, progress=heard.append) as found:
-        assert len(heard) == found.trials.rows
+        # The last one shows whether the slope is lost in its real geometry, too.
+        assert len(heard) == found.trials.rows + len(found.record["lost"]["trials"])
         for line in heard:
             factor, verdict = re.fullmatch(r"trial \d+ of about \d+, F = ([\d.]+) (\w+)", line).groups()
             place = np.argmin(np.abs(found.trials["factor"] - float(factor)))
@@ -329,7 +330,7 @@ def test_the_import_takes_numpy_alone(package):
 
 def test_the_wheel_holds_library_and_program_for_its_platform(wheel):
     assert wheel.name.startswith("enmm-") and "-py3-none-" in wheel.name and not wheel.name.endswith("-any.whl")
-    assert wheel.stat().st_size < 15e6
+    assert wheel.stat().st_size < 16e6
     names = zipfile.ZipFile(wheel).namelist()
     assert sum("libenmm." in name or "enmm.dll" in name for name in names) == 1
     assert sum("/scripts/enmm" in name for name in names) == 1

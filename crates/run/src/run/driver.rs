@@ -105,7 +105,7 @@ struct Saved<S = State> {
 enum StageEnd {
     Over,
     /// A static stage whose slope has run away, with the report of its last step.
-    RanAway(StepReport),
+    RanAway(Box<StepReport>),
     Interrupted,
     Failed(StepError),
 }
@@ -276,7 +276,7 @@ impl<'a> Driver<'a> {
         }
         match settle::until_over(self, |driver| &driver.simulation, |driver| driver.pass(&plan)) {
             Ok(last) => self.end_stage(last, recorded, false),
-            Err(Ok(StageEnd::RanAway(last))) => self.end_stage(Some(last), recorded, true),
+            Err(Ok(StageEnd::RanAway(last))) => self.end_stage(Some(*last), recorded, true),
             Err(halt) => halt,
         }
     }
@@ -326,7 +326,7 @@ impl<'a> Driver<'a> {
             self.write_row(&report, &before, dt_before, sweeps_mean).map_err(Err)?;
         }
         if step.is_multiple_of(settle::RUNAWAY_STEPS) && self.simulation.has_run_away() {
-            return Err(Ok(StageEnd::RanAway(report)));
+            return Err(Ok(StageEnd::RanAway(Box::new(report))));
         }
         Ok(rest_due.then_some(report))
     }

@@ -121,7 +121,7 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     if !rubbing && !case.joint_laws.is_empty() {
         doubts.push("no joint has friction: the factor is one on cohesion and tensile strength alone".to_owned());
     }
-    let worst = trials.iter().map(|t| t.ledger_residual.abs()).fold(0.0, f64::max);
+    let worst = reduction.ledger_residual();
     if worst > RESIDUAL {
         doubts.push(format!(
             "the energy ledger of a trial is open by {worst:.1e} of its largest term (limit {RESIDUAL})"

@@ -216,6 +216,14 @@ impl Reduction {
         (self.end == End::Found).then_some(0.5 * (low + high))
     }
 
+    /// The largest energy that a ledger leaves open, over its largest term: of stable trials, and of those in the real
+    /// geometry. In small displacements the ledger of a slope that moves far is exact to the first order of turns alone.
+    pub fn ledger_residual(&self) -> f64 {
+        let lost = self.lost.iter().flat_map(|lost| &lost.trials);
+        let counts = |t: &&Trial| t.verdict == Verdict::Stable || t.geometry == Geometry::Real;
+        self.trials.iter().chain(lost).filter(counts).map(|t| t.ledger_residual.abs()).fold(0.0, f64::max)
+    }
+
     /// The least trial that was not stable.
     pub fn first_unstable(&self) -> Option<&Trial> {
         self.trials.iter().find(|trial| Some(trial.factor) == self.high)

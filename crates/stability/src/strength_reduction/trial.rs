@@ -6,7 +6,7 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
-use super::setting::{Geometry, Setting};
+use super::setting::Setting;
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
 use enmm::geometry::Vector;
@@ -210,10 +210,7 @@ impl Base {
             let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
             let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
             let sample = self.sample(&simulation, &last, &first, way, &few);
-            // In small displacements the ledger is exact to the first order of turns alone.
-            if begun_as.geometry == Geometry::Real || sample.displacement <= self.far {
-                residual = last.ledger.residual_relative();
-            }
+            residual = last.ledger.residual_relative();
             samples.push(Sample { time: simulation.time() - start, ..sample });
             judged = judge::judge(&samples, &scales);
         }
