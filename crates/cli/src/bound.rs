@@ -51,7 +51,7 @@ const LEAST: usize = 30;
 
 /// Limit analysis of rigid blocks, or of rock that yields.
 enum Found {
-    Blocks(Bound),
+    Blocks(Box<Bound>),
     Rock(Bracket),
 }
 
@@ -59,7 +59,7 @@ impl Found {
     fn of(loaded: &LoadedCase, triangles: usize) -> Result<Self, BoundFailure> {
         match loaded.case.yields() {
             true => enmm_run::bracket(loaded, triangles).map(Self::Rock),
-            false => enmm_run::bound(loaded).map(Self::Blocks),
+            false => enmm_run::bound(loaded).map(|bound| Self::Blocks(Box::new(bound))),
         }
     }
 
