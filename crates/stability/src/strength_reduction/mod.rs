@@ -217,7 +217,8 @@ impl Reduction {
     }
 
     /// The largest energy that a ledger leaves open, over its largest term: of stable trials, and of those in the real
-    /// geometry. In small displacements the ledger of a slope that moves far is exact to the first order of turns alone.
+    /// geometry. In small displacements the ledger of a slope that moves far is exact to the first order of turns
+    /// alone.
     pub fn ledger_residual(&self) -> f64 {
         let lost = self.lost.iter().flat_map(|lost| &lost.trials);
         let counts = |t: &&Trial| t.verdict == Verdict::Stable || t.geometry == Geometry::Real;

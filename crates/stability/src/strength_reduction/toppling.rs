@@ -23,8 +23,8 @@ const ELEMENTS: f64 = 3.0;
 /// The same where rock yields.
 const ELEMENTS_YIELDING: f64 = 6.0;
 
-/// Nudges the greatest stable trial where the blocks that fail turn, in the geometry as drawn, and goes down where it fails. Returns the search
-/// with the bracket that nudges leave, and the factor before them.
+/// Nudges the greatest stable trial where the blocks that fail turn, in the geometry as drawn, and goes down where it
+/// fails. Returns the search with the bracket that nudges leave, and the factor before them.
 pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search: &Search) -> (Series, Option<f64>) {
     let are_blocks = setting.geometry == Geometry::Drawn;
     let Some(before) = series.factor().filter(|_| are_blocks && turns(trials.base, &series)) else {
