@@ -15,7 +15,11 @@ const FACING: f64 = 10.0 * PI / 180.0;
 /// Angle (rad) between directions of one line that is round-off.
 const ROUND_OFF: f64 = 1e-6;
 /// Uniaxial strength (Pa) of rock for which the case gives none.
-pub const ROCK_STRENGTH: f64 = 50e6;
+const ROCK_STRENGTH: f64 = 50e6;
+/// Share of the weight that moves from which the force of a corner counts.
+pub const COUNTS: f64 = 0.02;
+/// Distance over the mesh size within which ends of joints are taken for drawn on a line.
+const DRAWN: f64 = 0.1;
 
 /// A corner of a block that meets a side of another which rises in front of it, with nothing but air between them.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,9 +58,7 @@ impl CornerContact {
     pub fn capacity(&self) -> f64 {
         self.length() * self.strength
     }
-}
 
-impl CornerContact {
     /// Normal force (N/m) that it carried in the last step of a model.
     pub fn force(&self, simulation: &Simulation) -> f64 {
         let boundary = &simulation.model().boundary;
@@ -66,9 +68,6 @@ impl CornerContact {
         contacts.map(|contact| contact.normal_force).sum()
     }
 }
-
-/// Share of the weight that moves from which the force of a corner counts.
-pub const COUNTS: f64 = 0.02;
 
 /// A corner contact with its force.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +79,11 @@ pub struct CarryingCorner {
 }
 
 impl CarryingCorner {
+    /// Whether the force is more than the rock over the length bears.
+    pub fn is_crushed(&self) -> bool {
+        self.force >= self.corner.capacity()
+    }
+
     /// Block, place, length and force.
     pub fn text(&self) -> String {
         let force = self.force / 1e3;
@@ -92,14 +96,10 @@ impl CarryingCorner {
 pub fn carrying_corners(simulation: &Simulation) -> Vec<CarryingCorner> {
     let with_force = |corner: CornerContact| CarryingCorner { force: corner.force(simulation), corner };
     let carries = |carrying: &CarryingCorner| {
-        let corner = &carrying.corner;
-        carrying.force >= corner.capacity() && carrying.force > COUNTS * weight(simulation, corner.block)
+        carrying.is_crushed() && carrying.force > COUNTS * weight(simulation, carrying.corner.block)
     };
     corner_contacts(simulation).into_iter().map(with_force).filter(carries).collect()
 }
-
-/// Distance over the mesh size within which ends of joints are taken for drawn on a line.
-const DRAWN: f64 = 0.1;
 
 /// Corner contacts of the drawing in a point, or over a length that may be an error of the drawing and that does not
 /// bear the weight of their block.
@@ -266,16 +266,14 @@ impl<'a> Rounds<'a> {
             let contacts = self.contacts(foot, &[], stands.map(|edge| self.boundary.side[edge]));
             return corner_contact(own.block, ahead.block, [place; 2], contacts);
         }
-        let lip = self.lip(foot)?;
-        let end = self.boundary.reference[self.inner_end(*lip.last()?, foot.turn)];
-        let stands = self.stands_at(end, foot)?;
+        let (lip, end, stands) = self.lip(foot)?;
         let contacts = self.contacts(foot, &lip, stands.map(|edge| self.boundary.side[edge]));
         corner_contact(own.block, ahead.block, [end, place], contacts)
     }
 
     /// Edges of a block from the air along the one face that it shares with the block ahead, as far as it is straight
-    /// and ends in a notch.
-    fn lip(&self, foot: &Foot) -> Option<Vec<EdgeId>> {
+    /// and ends in a notch; with its end, and the edges on which the block stands there.
+    fn lip(&self, foot: &Foot) -> Option<(Vec<EdgeId>, Point, [EdgeId; 2])> {
         let (own, ahead) = (foot.own[0].block, foot.rest[0].block);
         let is_of_both = |sectors: &[Sector]| sectors.iter().all(|s| s.block == own || s.block == ahead);
         let mut edge = foot.standing()?[0];
@@ -285,8 +283,8 @@ impl<'a> Rounds<'a> {
         while goes_on && libm::fabs(angle_between(direction, self.direction(edge))) <= FACING {
             lip.push(edge);
             let end = self.boundary.reference[self.inner_end(edge, foot.turn)];
-            if self.stands_at(end, foot).is_some() {
-                return Some(lip);
+            if let Some(stands) = self.stands_at(end, foot) {
+                return Some((lip, end, stands));
             }
             let about = self.sectors(end);
             goes_on = about.len() == 2 && is_of_both(&about);

@@ -3,7 +3,6 @@
 use super::corners::CornersHold;
 use super::series::Series;
 use super::{Reduction, Trial, Verdict};
-use crate::corners::CarryingCorner;
 
 /// Digits by which two factors differ: less is the same factor in a text.
 const SAME: f64 = 5e-5;
@@ -26,8 +25,7 @@ impl Series {
 impl CornersHold {
     /// The factor where corners hold, and which.
     pub fn text(&self) -> String {
-        let corners: Vec<String> = self.corners.iter().map(CarryingCorner::text).collect();
-        format!("{} where corners hold: {}", self.series.text(), corners.join(", "))
+        format!("{} where corners hold: {}", self.series.text(), self.places())
     }
 }
 

@@ -19,6 +19,11 @@ pub struct CornersHold {
 }
 
 impl CornersHold {
+    /// The corners in words.
+    pub fn places(&self) -> String {
+        self.corners.iter().map(CarryingCorner::text).collect::<Vec<String>>().join(", ")
+    }
+
     /// Whether the slope has a lower factor without them: where it starts to move, or where it is lost.
     pub fn decide(&self, without: &Series, lost: Option<&Series>) -> bool {
         let low = lost.unwrap_or(without).low;
@@ -39,7 +44,7 @@ pub fn carrying(base: &Simulation, searches: &[&Series]) -> Vec<CarryingCorner> 
         CarryingCorner { corner, force }
     };
     let corners = corner_contacts(base).into_iter().map(with_force);
-    let crushed: Vec<CarryingCorner> = corners.filter(|held| held.force >= held.corner.capacity()).collect();
+    let crushed: Vec<CarryingCorner> = corners.filter(CarryingCorner::is_crushed).collect();
     let (_, gravity) = height_and_gravity(base);
     let moving =
         searches.iter().filter_map(|search| search.trial(search.high)).map(Trial::failing_mass).reduce(f64::max);

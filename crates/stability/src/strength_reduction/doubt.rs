@@ -2,7 +2,6 @@
 
 use super::corners::CornersHold;
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
-use crate::corners::CarryingCorner;
 use crate::limit_analysis::Bound;
 use crate::limit_analysis::continuum::Bracket;
 use enmm::model::case::{Case, Rock};
@@ -133,11 +132,10 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
 impl CornersHold {
     /// That corners hold the slope.
     fn doubt(&self) -> String {
-        let corners: Vec<String> = self.corners.iter().map(CarryingCorner::text).collect();
         format!(
             "corners that meet rock ahead of them carry the slope: {}, which is more than rock of {:.0} MPa bears \
              there; the factor is that without them, {} with them; solver.corner_contacts = \"hold\" counts them",
-            corners.join(", "),
+            self.places(),
             self.corners.iter().map(|corner| corner.corner.strength).fold(f64::INFINITY, f64::min) / 1e6,
             self.series.text()
         )

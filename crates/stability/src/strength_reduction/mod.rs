@@ -304,8 +304,8 @@ pub fn factor_of_safety(
         (series, lost_too, decide.then_some(hold), broken)
     };
     let (series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
-    rest.warnings.extend(toppling::coarse(&base, &series));
     let mechanism = toppling::mechanism(&base, &series);
+    rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
     let (bound, bracket) = second_opinion(case, &series.end);
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
     let free_area = base.free_area();

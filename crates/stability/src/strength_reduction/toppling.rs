@@ -27,7 +27,7 @@ const ELEMENTS_YIELDING: f64 = 6.0;
 /// fails. Returns the search with the bracket that nudges leave, and the factor before them.
 pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search: &Search) -> (Series, Option<f64>) {
     let are_blocks = setting.geometry == Geometry::Drawn;
-    let Some(before) = series.factor().filter(|_| are_blocks && turns(trials.base, &series)) else {
+    let Some(before) = series.factor().filter(|_| are_blocks && turns(mechanism(trials.base, &series))) else {
         return (series, None);
     };
     let outward = outward(series.trial(series.high));
@@ -79,8 +79,8 @@ pub fn mechanism(base: &Base, series: &Series) -> Option<Mechanism> {
 }
 
 /// Whether blocks turn that fail.
-fn turns(base: &Base, series: &Series) -> bool {
-    matches!(mechanism(base, series), Some(Mechanism::Topples | Mechanism::Rotates))
+fn turns(mechanism: Option<Mechanism>) -> bool {
+    matches!(mechanism, Some(Mechanism::Topples | Mechanism::Rotates))
 }
 
 /// Width (m) of a block: that of a rectangle of the same area and perimeter.
@@ -92,9 +92,9 @@ fn width(simulation: &Simulation, block: &FailingBlock) -> f64 {
 }
 
 /// A warning where blocks turn that have too few elements over their width.
-pub fn coarse(base: &Base, series: &Series) -> Option<String> {
+pub fn coarse(base: &Base, series: &Series, mechanism: Option<Mechanism>) -> Option<String> {
     let simulation = &base.simulation;
-    let trial = series.trial(series.high).filter(|_| turns(base, series))?;
+    let trial = series.trial(series.high).filter(|_| turns(mechanism))?;
     let wanted = if simulation.case().yields() { ELEMENTS_YIELDING } else { ELEMENTS };
     let size = simulation.model().covers.mesh.size;
     let moving = trial.failing.iter().filter(|block| block.displacement > 0.5 * trial.displacement);
