@@ -26,6 +26,13 @@ FLAGS = (
     "--remote-debugging-port=0",
 )
 PATIENCE = 120.0
+# Chromium itself may crash while it starts on a loaded machine (seen once: a segmentation fault before it listened). No
+# page of ours is open then, so it is started again.
+STARTS = 3
+
+
+class Crashed(RuntimeError):
+    """Chromium ended before it listened."""
 
 
 def find() -> str | None:
@@ -41,9 +48,8 @@ class Browser:
         self.requests: list[str] = []
         self._ids = itertools.count(1)
         command = [program, *FLAGS, f"--user-data-dir={folder}", f"--window-size={size[0]},{size[1]}", "about:blank"]
-        self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            port, path = self._wait_for(folder / "DevToolsActivePort")
+            port, path = self._start(command, folder)
             place = f"ws://127.0.0.1:{port}{path}"
             self._socket = websocket.create_connection(place, timeout=PATIENCE, suppress_origin=True)
             self._session = None
@@ -58,6 +64,16 @@ class Browser:
             self.close()
             raise
 
+    def _start(self, command: list[str], folder: Path) -> tuple[str, str]:
+        for start in itertools.count(1):
+            self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            try:
+                return self._wait_for(folder / "DevToolsActivePort")
+            except Crashed:
+                if start == STARTS:
+                    raise
+                shutil.rmtree(folder, ignore_errors=True)
+
     def _wait_for(self, file: Path) -> tuple[str, str]:
         until = time.monotonic() + PATIENCE
         while time.monotonic() < until:
@@ -65,7 +81,7 @@ class Browser:
             if len(lines) == 2:
                 return lines[0], lines[1]
             if self._process.poll() is not None:
-                raise RuntimeError(f"Chromium ended with status {self._process.returncode} before it listened")
+                raise Crashed(f"Chromium ended with status {self._process.returncode} before it listened")
             time.sleep(0.05)
         raise TimeoutError("Chromium does not listen")
 
