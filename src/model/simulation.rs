@@ -137,6 +137,14 @@ impl Simulation {
         self.workspace.selection.kept_gaps = Some(Vec::new());
     }
 
+    /// Stops all blocks, as a damper would: the ledger takes their kinetic energy as damped.
+    pub fn arrest(&mut self) {
+        self.report.take();
+        let kinetic: f64 = self.model().covers.blocks().map(|b| self.rigid_motion_of(b).3).sum();
+        self.built.state.ledger.damping += kinetic;
+        self.built.state.velocity.fill(Vector::zeros());
+    }
+
     /// Leaves out the contacts of nodes of a block with a side, as often as there are pairs, in later steps. A new
     /// stage or another state ends this.
     pub fn leave_out(&mut self, mut contacts: Vec<(BlockId, SideId)>) {

@@ -1,6 +1,7 @@
 //! Tests of factors of safety.
 
 mod bridges;
+mod columns;
 #[path = "../../../tests/common/mod.rs"]
 mod common;
 mod continuum;
@@ -10,6 +11,7 @@ mod fos_against_bound;
 mod fos_block_on_incline;
 mod hoek_brown_slope;
 mod issue_a_fault_a_millimetre_short_held_a_slope;
+mod issue_nudged_columns_leant_to_a_lower_factor;
 mod issue_rock_without_tension_never_rested;
 mod kinematics;
 mod limit_analysis;

@@ -45,39 +45,29 @@ pub enum Stop {
 /// A trial with the model at its end.
 pub type Outcome = Result<(Trial, Simulation), Stop>;
 
-/// What is done to a slope while its motion is followed.
-pub enum Course {
-    /// Its strength falls to that of a trial, from [`Course::DEPTH`] times that, by equal ratios in equal times, so
-    /// that joints take up their load one after the other and nothing is thrown (Eq. 60a).
-    Fall {
-        /// Strength factor at its end.
-        end: f64,
-    },
-    /// It is pushed by an acceleration (m/s²) for a time.
-    Push(Vector),
+/// A fall of strength to that of a trial, from [`Fall::DEPTH`] times that, by equal ratios in equal times, so that
+/// joints take up their load one after the other and nothing is thrown (Eq. 60a).
+struct Fall {
+    /// Strength factor at its end.
+    end: f64,
+    /// Duration (s).
+    time: f64,
 }
 
-impl Course {
+impl Fall {
     /// Strength at the beginning of a fall over that at its end.
     const DEPTH: f64 = 10.0;
 
-    /// Acts on the next step of a model, `since` (s) after the beginning and for a `time` (s).
-    fn act(&self, simulation: &mut Simulation, since: f64, time: f64) {
-        let (now, dt, gravity) = (simulation.time(), simulation.model().dt, simulation.model().gravity);
-        let is_over = since >= time;
-        let drive = simulation.drive();
-        match *self {
-            Self::Fall { .. } if is_over => {}
-            Self::Fall { end } => {
-                let strength = |since: f64| end * libm::pow(Self::DEPTH, 1.0 - (since / time).clamp(0.0, 1.0));
-                (drive.from.strength_factor, drive.to.strength_factor) = (strength(since), strength(since + dt));
-                (drive.since, drive.until) = (now, now + dt);
-            }
-            Self::Push(push) => {
-                let gravity = if is_over { gravity } else { gravity + push };
-                (drive.from.gravity, drive.to.gravity) = (gravity, gravity);
-            }
+    /// Sets the strength of the next step of a model, `since` (s) after the beginning.
+    fn act(&self, simulation: &mut Simulation, since: f64) {
+        if since >= self.time {
+            return;
         }
+        let (now, dt) = (simulation.time(), simulation.model().dt);
+        let strength = |since: f64| self.end * libm::pow(Self::DEPTH, 1.0 - (since / self.time).clamp(0.0, 1.0));
+        let drive = simulation.drive();
+        (drive.from.strength_factor, drive.to.strength_factor) = (strength(since), strength(since + dt));
+        (drive.since, drive.until) = (now, now + dt);
     }
 }
 
@@ -162,10 +152,12 @@ impl Base {
         setting.act(&mut simulation);
         simulation.drive().arrive();
         let blank = Trial { factor, geometry: setting.geometry, ..Trial::default() };
-        self.follow(blank, simulation, &Course::Fall { end: 1.0 / factor }, self.scales.ramp, interrupt)
+        let fall = Fall { end: 1.0 / factor, time: self.scales.ramp };
+        self.follow(blank, simulation, Some(&fall), interrupt)
     }
 
-    /// Pushes a slope that has come to rest in a trial, for a time (s), and follows it until it rests again.
+    /// Pushes a slope that has come to rest in a trial, until it has moved by as much as when it first came to rest, but
+    /// for a `time` (s) at most; lets it go from there, and follows it until it rests again.
     pub fn push(
         &self,
         (trial, mut simulation): (Trial, Simulation),
@@ -173,21 +165,40 @@ impl Base {
         time: f64,
         interrupt: Option<&AtomicBool>,
     ) -> Outcome {
+        let (clock, begun) = (Instant::now(), (simulation.time(), simulation.state().step));
+        let (from, far, gravity) = (simulation.clone(), self.given_way(), simulation.model().gravity);
+        let act = |simulation: &mut Simulation, gravity| {
+            let drive = simulation.drive();
+            (drive.from.gravity, drive.to.gravity) = (gravity, gravity);
+        };
         simulation.drive().arrive();
-        self.follow(trial, simulation, &Course::Push(push), time, interrupt)
+        act(&mut simulation, gravity + push);
+        let mut left = simulation.steps_in(time);
+        while left > 0 && self.moving().all(|b| moved_between([&from, &simulation], b) < far) {
+            window(&mut simulation, 1, |_| (), interrupt)?.map_err(Stop::Failed)?;
+            left -= 1;
+        }
+        act(&mut simulation, gravity);
+        simulation.arrest();
+        let trial = Trial {
+            time: trial.time + simulation.time() - begun.0,
+            steps: trial.steps + simulation.state().step - begun.1,
+            wall: trial.wall + clock.elapsed().as_secs_f64(),
+            ..trial
+        };
+        self.follow(trial, simulation, None, interrupt)
     }
 
-    /// Follows the motion of a model while a course acts on it for a `time` (s), and judges it.
+    /// Follows the motion of a model, through a fall of its strength if there is one, and judges it.
     fn follow(
         &self,
         begun_as: Trial,
         mut simulation: Simulation,
-        course: &Course,
-        time: f64,
+        fall: Option<&Fall>,
         interrupt: Option<&AtomicBool>,
     ) -> Outcome {
         let clock = Instant::now();
-        let scales = self.scales.of(time, begun_as.geometry);
+        let scales = self.scales.of(fall.map_or(0.0, |fall| fall.time), begun_as.geometry);
         let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
         let mut positions = self.positions(&simulation);
@@ -195,15 +206,14 @@ impl Base {
         let (mut first, mut residual) = (None, 0.0);
         let mut judged = None;
         while judged.is_none() {
-            let last =
-                match window(&mut simulation, steps, |model| course.act(model, model.time() - start, time), interrupt)?
-                {
-                    Ok(report) => report,
-                    Err(error) => {
-                        judged = Some(given_up(&samples, &scales).ok_or(Stop::Failed(error))?);
-                        break;
-                    }
-                };
+            let act = |model: &mut Simulation| fall.into_iter().for_each(|fall| fall.act(model, model.time() - start));
+            let last = match window(&mut simulation, steps, act, interrupt)? {
+                Ok(report) => report,
+                Err(error) => {
+                    judged = Some(given_up(&samples, &scales).ok_or(Stop::Failed(error))?);
+                    break;
+                }
+            };
             let first = *first.get_or_insert(last.ledger);
             let before = std::mem::replace(&mut positions, self.positions(&simulation));
             let few = self.few(&simulation);
@@ -269,8 +279,7 @@ impl Base {
 
     /// Largest displacement (m) of a block's covers since the trial began.
     fn moved(&self, simulation: &Simulation, block: BlockId) -> f64 {
-        let [begin, now] = [&self.simulation, simulation].map(|simulation| &simulation.state().displacement);
-        simulation.model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
+        moved_between([&self.simulation, simulation], block)
     }
 
     /// Motion of all free blocks since the trial began.
@@ -362,6 +371,12 @@ fn yields(simulation: &Simulation) -> bool {
 /// Whether bars are there and none has yielded: slip that stretches them is elastic.
 fn stretches(simulation: &Simulation) -> bool {
     simulation.state().bolts.iter().any(|bolt| bolt.active) && !yields(simulation)
+}
+
+/// Largest displacement (m) of a block's covers between two states of a model.
+fn moved_between(states: [&Simulation; 2], block: BlockId) -> f64 {
+    let [begin, now] = states.map(|simulation| &simulation.state().displacement);
+    states[1].model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
 }
 
 /// Largest displacement (m) in which a slope has come to rest.
