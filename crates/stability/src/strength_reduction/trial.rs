@@ -6,7 +6,7 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use super::judge::{self, Sample, Scales, Verdict};
-use super::setting::Setting;
+use super::setting::{Geometry, Setting};
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{FailingBlock, Trial};
 use enmm::geometry::Vector;
@@ -156,8 +156,8 @@ impl Base {
         self.follow(blank, simulation, Some(&fall), interrupt)
     }
 
-    /// Pushes a slope that has come to rest in a trial, until it has moved by as much as when it first came to rest, but
-    /// for a `time` (s) at most; lets it go from there, and follows it until it rests again.
+    /// Pushes a slope that has come to rest in a trial, until it has moved far, but for a `time` (s) at most; lets it go
+    /// from there, and follows it until it rests again.
     pub fn push(
         &self,
         (trial, mut simulation): (Trial, Simulation),
@@ -166,7 +166,7 @@ impl Base {
         interrupt: Option<&AtomicBool>,
     ) -> Outcome {
         let (clock, begun) = (Instant::now(), (simulation.time(), simulation.state().step));
-        let (from, far, gravity) = (simulation.clone(), self.given_way(), simulation.model().gravity);
+        let (from, gravity) = (simulation.clone(), simulation.model().gravity);
         let act = |simulation: &mut Simulation, gravity| {
             let drive = simulation.drive();
             (drive.from.gravity, drive.to.gravity) = (gravity, gravity);
@@ -174,7 +174,7 @@ impl Base {
         simulation.drive().arrive();
         act(&mut simulation, gravity + push);
         let mut left = simulation.steps_in(time);
-        while left > 0 && self.moving().all(|b| moved_between([&from, &simulation], b) < far) {
+        while left > 0 && self.moving().all(|b| moved_between([&from, &simulation], b) < self.far) {
             window(&mut simulation, 1, |_| (), interrupt)?.map_err(Stop::Failed)?;
             left -= 1;
         }
@@ -210,7 +210,7 @@ impl Base {
             let last = match window(&mut simulation, steps, act, interrupt)? {
                 Ok(report) => report,
                 Err(error) => {
-                    judged = Some(given_up(&samples, &scales).ok_or(Stop::Failed(error))?);
+                    judged = Some(given_up(&samples, &scales, begun_as.geometry).ok_or(Stop::Failed(error))?);
                     break;
                 }
             };
@@ -355,11 +355,12 @@ fn window(
     Ok(Ok(report))
 }
 
-/// A slope that was running away when the numbers gave up has failed.
-fn given_up(samples: &[Sample], scales: &Scales) -> Option<(Verdict, judge::Reason)> {
+/// A slope that was running away when the numbers gave up has failed. So has one that gave up far from where it is
+/// drawn: its contacts are deep in each other there, and nothing real stops it.
+fn given_up(samples: &[Sample], scales: &Scales, geometry: Geometry) -> Option<(Verdict, judge::Reason)> {
     let [.., before, last] = samples else { return None };
-    let running = last.displacement > scales.elastic && last.kinetic > before.kinetic;
-    running.then_some((Verdict::Unstable, judge::Reason::Runaway))
+    let runs = last.kinetic > before.kinetic || geometry == Geometry::Drawn;
+    (runs && last.displacement > scales.elastic).then_some((Verdict::Unstable, judge::Reason::Runaway))
 }
 
 /// Whether a bar has yielded or broken since the case began.
