@@ -14,6 +14,7 @@ pub mod limits;
 mod orientation;
 pub mod philox;
 mod pictures;
+pub mod plausible;
 mod random;
 mod validate;
 

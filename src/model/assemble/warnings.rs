@@ -1,10 +1,8 @@
-//! Warnings about a model that can be built: changes of its geometry, and values beyond the usual ranges
-//! of rock and soil, which are mostly slips in a unit or a sign.
+//! Warnings about a model that can be built: changes of its geometry, and values that fit no slope of its size.
 
 use crate::contact::LawId;
 use crate::cover::Crumb;
 use crate::geometry::{NodingReport, Point, polygon};
-use crate::model::case::key::Key;
 use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
 use crate::state::Model;
 
@@ -14,10 +12,6 @@ use super::law_of;
 use super::locator::Locator;
 use super::points;
 
-/// Young's modulus of soft soil and of the hardest rock (Pa).
-const YOUNG: [f64; 2] = [1e5, 5e11];
-/// Density of light fills and of ores (kg/m³).
-const DENSITY: [f64; 2] = [500.0, 10_000.0];
 /// Longest side of the box of a slope (m).
 const LONGEST: f64 = 2e4;
 /// Length of a fixed edge over that of the boundary on it.
@@ -122,8 +116,7 @@ pub fn ignored_traces(noding: &NodingReport) -> Vec<usize> {
 
 /// Warnings about unusual values of the case.
 pub(super) fn of_values(case: &Case, model: &Model, positions: &Locator) -> Vec<String> {
-    let mut warnings = rocks(case);
-    warnings.extend(without_effect(&case.solver));
+    let mut warnings = without_effect(&case.solver);
     warnings.extend(extent(case, model));
     warnings.extend(gravity(case));
     warnings.extend(unheld(case));
@@ -162,28 +155,6 @@ fn without_effect(solver: &Solver) -> Vec<String> {
         )
     };
     others.iter().filter(|(_, set)| *set).map(tell).collect()
-}
-
-fn rocks(case: &Case) -> Vec<String> {
-    let mut warnings = Vec::new();
-    for (name, rock) in &case.rocks {
-        let key = Key::root().field("rock").field(name);
-        let (young, density) = (rock.young, rock.density);
-        if !(YOUNG[0]..=YOUNG[1]).contains(&young) {
-            warnings.push(format!(
-                "{key}.young: is {young} Pa, rock and soil have {:e} to {:e} Pa; 50 GPa are 50e9",
-                YOUNG[0], YOUNG[1]
-            ));
-        }
-        if !(DENSITY[0]..=DENSITY[1]).contains(&density) {
-            warnings.push(format!(
-                "{key}.density: is {density} kg/m³, rock and soil have {} to {} kg/m³; a unit weight of 26.5 kN/m³ is \
-                 2700 kg/m³",
-                DENSITY[0], DENSITY[1]
-            ));
-        }
-    }
-    warnings
 }
 
 /// A model that is larger than slopes are, or smaller than its mesh.

@@ -16,6 +16,7 @@ mod stages;
 use thiserror::Error;
 
 use super::key::Key;
+use super::plausible;
 use super::{
     Case, Domain, FmuNotes, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, ReportNotes, Rock, Solver,
 };
@@ -41,8 +42,15 @@ impl Case {
     /// Checks every value and reference of the case.
     ///
     /// # Errors
-    /// The first value that cannot be used, in the order of the fields of [`Case`].
+    /// The first value that cannot be used, in the order of the fields of [`Case`], with what is usual for its key.
     pub fn validate(&self) -> Result<(), Invalid> {
+        self.first_invalid().map_err(|invalid| match plausible::usual(&invalid.key) {
+            Some(usual) => Invalid { message: format!("{}; {usual}", invalid.message), ..invalid },
+            None => invalid,
+        })
+    }
+
+    fn first_invalid(&self) -> Result<(), Invalid> {
         self.must_be_expanded()?;
         let root = Key::root();
         harmless(&root.field("title"), &self.title)?;

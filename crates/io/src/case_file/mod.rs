@@ -10,7 +10,7 @@ use super::geometry_file::{self, Fault, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
 use super::record_file;
 use enmm::cosimulation::Cosimulation;
-use enmm::model::case::{Case, Invalid, JointTrace, Orientations};
+use enmm::model::case::{Case, Invalid, JointTrace, Orientations, plausible};
 
 /// Largest text of a case (bytes): some 100 000 traces, which take two seconds to read. Files of geometry and records
 /// are read far faster.
@@ -55,6 +55,7 @@ impl LoadedCase {
         source.origins = told.origins;
         let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
         case.validate().map_err(located)?;
+        warnings.extend(plausible::doubts(&typed));
         let hash = case.fingerprint().map_err(located)?;
         let settings = source.settings.values().cloned().collect();
         Ok(Self { case, typed, source, hash, orientations, warnings, settings })

@@ -1,0 +1,241 @@
+//! Usual ranges of all that has a unit in a case, and the slips that a value outside them looks like. One table serves
+//! warnings (`enmm check`, `edit`, runs and hosts) and the errors of validation.
+
+use serde_json::Value;
+
+use crate::Case;
+use crate::key::Key;
+
+/// A unit with the slips that people make in it: what a number was meant in, and by what it must be multiplied.
+struct Unit {
+    name: &'static str,
+    slips: &'static [(&'static str, f64)],
+}
+
+const PASCAL: Unit = Unit { name: "Pa", slips: &[("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("Pa times 1000", 1e-3)] };
+const NEWTON: Unit = Unit { name: "N", slips: &[("kN", 1e3), ("MN", 1e6), ("mN", 1e-3)] };
+const METRE: Unit = Unit { name: "m", slips: &[("mm", 1e-3), ("cm", 1e-2), ("km", 1e3)] };
+const SQUARE_METRE: Unit =
+    Unit { name: "m²", slips: &[("mm²", 1e-6), ("cm²", 1e-4), ("mm² divided by 1000", 1e-3)] };
+const DEGREE: Unit = Unit { name: "°", slips: &[] };
+const DENSITY: Unit =
+    Unit { name: "kg/m³", slips: &[("t/m³", 1e3), ("kN/m³", 1e3 / 9.81), ("N/m³", 1.0 / 9.81), ("g/m³", 1e-3)] };
+const STIFFNESS: Unit = Unit { name: "Pa/m", slips: &[("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9)] };
+const ACCELERATION: Unit = Unit { name: "m/s²", slips: &[("cm/s²", 1e-2), ("mm/s²", 1e-3), ("km/s²", 1e3)] };
+const SECOND: Unit = Unit { name: "s", slips: &[("ms", 1e-3), ("hours", 3600.0)] };
+const ENERGY: Unit = Unit { name: "J/m²", slips: &[("kJ/m²", 1e3), ("N/mm", 1e3)] };
+
+/// A row of the table: keys, without the numbers of lists and with `*` for names, and the range of the field.
+struct Row {
+    keys: &'static [&'static str],
+    unit: &'static Unit,
+    range: [f64; 2],
+    usual: &'static str,
+}
+
+const fn row(keys: &'static [&'static str], unit: &'static Unit, range: [f64; 2], usual: &'static str) -> Row {
+    Row { keys, unit, range, usual }
+}
+
+/// Magnitudes outside which a value is doubted; 0, which means "none" nearly everywhere, is not.
+const TABLE: &[Row] = &[
+    row(&["rock.*.density", "in_situ.density"], &DENSITY, [500.0, 1e4], "rock has 2000 to 3200"),
+    row(&["rock.*.young"], &PASCAL, [1e8, 5e11], "rock masses have 1e9 to 1e11"),
+    row(&["rock.*.cohesion"], &PASCAL, [500.0, 1e8], "soil has 1e3 to 1e5, rock masses 1e4 to 1e7"),
+    row(&["rock.*.tension"], &PASCAL, [100.0, 5e7], "rock has 1e4 to 2e7"),
+    row(&["rock.*.hoek_brown.sigma_ci"], &PASCAL, [5e5, 5e8], "rock has 5e6 to 3e8"),
+    row(&["rock.*.friction_deg"], &DEGREE, [8.0, 75.0], "soil and rock have 15 to 60"),
+    row(
+        &["joint_law.*.friction_deg", "joint_law.*.residual_friction_deg", "stage.law.friction_deg"],
+        &DEGREE,
+        [8.0, 75.0],
+        "joints have 15 to 60",
+    ),
+    row(&["rock.*.dilation_deg", "joint_law.*.dilation_deg"], &DEGREE, [0.5, 50.0], "rock and joints have 0 to 20"),
+    row(
+        &["joint_law.*.cohesion", "joint_law.*.residual_cohesion", "stage.law.cohesion"],
+        &PASCAL,
+        [100.0, 1e8],
+        "joints have 0 to 1e6, rock bridges up to 3e7",
+    ),
+    row(
+        &["joint_law.*.tension", "joint_law.*.residual_tension", "stage.law.tension"],
+        &PASCAL,
+        [100.0, 5e7],
+        "joints have 0 to 1e5, rock bridges up to 2e7",
+    ),
+    row(&["joint_law.*.jcs", "joint_law.*.crush"], &PASCAL, [5e5, 1e9], "walls of joints have 5e6 to 3e8"),
+    row(
+        &["joint_law.*.normal_stiffness", "joint_law.*.shear_stiffness"],
+        &STIFFNESS,
+        [1e7, 1e14],
+        "joints have 1e8 to 1e12",
+    ),
+    row(&["joint_law.*.closure_max"], &METRE, [1e-6, 2e-2], "joints close by 1e-5 to 1e-3"),
+    row(&["joint_law.*.dilation_slip"], &METRE, [1e-4, 10.0], "joints dilate over 1e-3 to 0.2"),
+    row(&["joint_law.*.tension_energy"], &ENERGY, [1.0, 1e5], "rock takes 20 to 500"),
+    row(&["joint_law.*.shear_energy"], &ENERGY, [1.0, 1e7], "rock takes 100 to 1e5"),
+    row(&["bolt.young", "bolt_pattern.young"], &PASCAL, [2e10, 4e11], "steel has 2e11"),
+    row(&["bolt.area", "bolt_pattern.area"], &SQUARE_METRE, [4e-5, 2e-2], "a bar of 25 mm has 4.9e-4"),
+    row(&["bolt.spacing", "bolt_pattern.spacing"], &METRE, [0.2, 50.0], "bars stand 1 to 5 apart"),
+    row(
+        &["bolt.yield_force", "bolt.pretension", "bolt_pattern.yield_force", "bolt_pattern.pretension"],
+        &NEWTON,
+        [5e3, 2e7],
+        "bars carry 1e5 to 5e5, anchors up to 3e6",
+    ),
+    row(&["bolt.free_length", "bolt_pattern.free_length"], &METRE, [0.01, 100.0], "0.05 to 0.5 at a joint"),
+    row(&["bolt_pattern.length"], &METRE, [0.5, 200.0], "bars have 2 to 12, anchors up to 60"),
+    row(&["bolt_pattern.distance"], &METRE, [0.2, 100.0], "1 to 5 is usual"),
+    row(&["joint_set.spacing", "tessellation.size"], &METRE, [0.02, 500.0], "joints stand 0.1 to 20 apart"),
+    row(&["joint_set.trace_length"], &METRE, [0.05, 5e3], "traces have 0.5 to 200"),
+    row(&["joint_set.gap"], &METRE, [5e-3, 500.0], "rock bridges have 0.1 to 10"),
+    row(
+        &[
+            "joint_set.angle_deg",
+            "joint_set.dip_deg",
+            "joint_set.dip_direction_deg",
+            "joint.dip_deg",
+            "mesh.angle_deg",
+            "bolt_pattern.angle_deg",
+        ],
+        &DEGREE,
+        [0.2, 360.0],
+        "0 to 360",
+    ),
+    row(&["gravity.x", "gravity.y"], &ACCELERATION, [1e-2, 100.0], "down is -9.81"),
+    row(&["load.acceleration"], &ACCELERATION, [1e-3, 100.0], "a tenth of gravity is 0.981"),
+    row(
+        &["load.pressure", "load.pressure_end", "load.traction", "port.pressure", "port.traction"],
+        &PASCAL,
+        [50.0, 1e9],
+        "10 m of water press with 98.1e3",
+    ),
+    row(&["load.force", "port.force"], &NEWTON, [10.0, 1e10], "a metre of a 10 t load weighs 98.1e3"),
+    row(&["water.density"], &DENSITY, [800.0, 1500.0], "water has 1000"),
+    row(&["in_situ.sxx", "in_situ.syy", "in_situ.szz"], &PASCAL, [1e3, 1e9], "100 m of rock press with 2.6e6"),
+    row(&["in_situ.gradient", "in_situ.szz_gradient"], &STIFFNESS, [50.0, 1e6], "the weight of rock makes 2.6e4"),
+    row(&["stage.duration", "stage.duration_max"], &SECOND, [0.05, 2e3], "slopes rest or fail within 1 to 60"),
+];
+
+/// Tables of a case whose entries have names of the user's.
+const NAMED: [&str; 2] = ["rock", "joint_law"];
+/// Young's modulus of rock, and the least one (Pa) of rock that yields, which may be soil.
+const YOUNG: &str = "rock.*.young";
+const SOIL_YOUNG: f64 = 1e5;
+
+impl Row {
+    /// What is doubtful about a value; nothing where it is usual, or 0.
+    fn doubt(&self, value: f64, low: f64) -> Option<String> {
+        let [size, high] = [value.abs(), self.range[1]];
+        if value == 0.0 || !value.is_finite() || (low..=high).contains(&size) {
+            return None;
+        }
+        let meant = |size: f64| (low..=high).contains(&size);
+        let slip = self.unit.slips.iter().find(|(_, by)| meant(size * by));
+        let looks = match slip {
+            Some((name, by)) => format!("; {value} looks like {name}: write {}", plain(value * by)),
+            None => self.angle_meant(size).unwrap_or_default(),
+        };
+        let unit = self.unit.name;
+        Some(format!("is {}, which is {}: {} {unit}{looks}", measured(value, unit), side(size, low), self.usual))
+    }
+
+    /// The angle of which a value looks like the tangent or the radians.
+    fn angle_meant(&self, size: f64) -> Option<String> {
+        let [low, high] = self.range;
+        let angle = libm::atan(size).to_degrees();
+        let is_tangent = self.unit.name == DEGREE.name && (low..=high).contains(&angle);
+        is_tangent.then(|| {
+            format!("; {size} is the tangent of {angle:.1}°, or {:.1}° in radians: write degrees", size.to_degrees())
+        })
+    }
+}
+
+fn side(size: f64, low: f64) -> &'static str {
+    if size < low { "unusually little" } else { "unusually much" }
+}
+
+fn measured(value: f64, unit: &str) -> String {
+    if unit == DEGREE.name { format!("{value}°") } else { format!("{} {unit}", plain(value)) }
+}
+
+/// A number as people write it.
+fn plain(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+/// Warnings about values of a case that are outside the usual ranges, by key, with what they look like.
+pub fn doubts(case: &Case) -> Vec<String> {
+    let mut found = Vec::new();
+    let Ok(value) = serde_json::to_value(case) else { return found };
+    walk(&value, &Key::root(), "", &mut |key, pattern, value| {
+        let Some(row) = row_of(pattern) else { return };
+        let low = if pattern == YOUNG && is_soil(case, key) { SOIL_YOUNG } else { row.range[0] };
+        found.extend(row.doubt(value, low).map(|doubt| format!("{key}: {doubt}")));
+    });
+    found
+}
+
+/// What is usual for a key, as errors say it.
+pub fn usual(key: &str) -> Option<String> {
+    row_of(&pattern_of(key)).map(|row| format!("{} {}", row.usual, row.unit.name))
+}
+
+/// Keys of the table, `*` for names.
+pub fn keys() -> impl Iterator<Item = &'static str> {
+    TABLE.iter().flat_map(|row| row.keys.iter().copied())
+}
+
+fn row_of(pattern: &str) -> Option<&'static Row> {
+    TABLE.iter().find(|row| row.keys.contains(&pattern))
+}
+
+/// Calls `see` for each number of a value that the table may know, with its key and that key as the table has it.
+fn walk(value: &Value, key: &Key, pattern: &str, see: &mut impl FnMut(&Key, &str, f64)) {
+    match value {
+        Value::Number(number) => see(key, pattern, number.as_f64().unwrap_or(f64::NAN)),
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(k, item)| walk(item, &key.index(k), pattern, see));
+        }
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                let last = if NAMED.contains(&pattern) { "*" } else { name };
+                let pattern = if pattern.is_empty() { last.to_owned() } else { format!("{pattern}.{last}") };
+                if keys().any(|known| known.starts_with(&pattern)) {
+                    walk(field, &key.field(name), &pattern, see);
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// A key without numbers in lists, and with `*` for the names of rocks and joint laws.
+fn pattern_of(key: &str) -> String {
+    let mut pattern = String::new();
+    let mut rest = key;
+    while let Some((before, after)) = rest.split_once('[') {
+        pattern += before;
+        rest = after.split_once(']').map_or("", |(_, after)| after);
+    }
+    pattern += rest;
+    let of_table = |table: &&str| pattern.strip_prefix(*table)?.strip_prefix('.').and_then(field_of_named);
+    let named = NAMED.iter().find_map(|table| of_table(table).map(|field| format!("{table}.*.{field}")));
+    named.unwrap_or(pattern)
+}
+
+/// What follows a name, which may be quoted, and its point.
+fn field_of_named(rest: &str) -> Option<&str> {
+    match rest.strip_prefix('"') {
+        Some(quoted) => quoted.split_once("\".").map(|(_, field)| field),
+        None => rest.split_once('.').map(|(_, field)| field),
+    }
+}
+
+/// Whether a key belongs to rock that yields.
+fn is_soil(case: &Case, key: &Key) -> bool {
+    let of = |name: &String| Key::root().field("rock").field(name).field("young") == *key;
+    case.rocks.iter().any(|(name, rock)| of(name) && rock.yields())
+}
