@@ -42,7 +42,8 @@ pub(super) fn base_motions(case: &Case) -> Vec<BaseMotion> {
     let of = |base: &case::BaseMotion| {
         let kind = match base.kind {
             BaseMotionKind::Acceleration => MotionKind::Acceleration,
-            BaseMotionKind::Velocity => MotionKind::Velocity,
+            // `Case::expand` has made velocities of displacements.
+            BaseMotionKind::Velocity | BaseMotionKind::Displacement => MotionKind::Velocity,
         };
         let axis = match base.axis {
             Axis::X => Vector::x(),
