@@ -109,6 +109,14 @@ rupture_strain = 0.1
 pretension = 1e4
 free_length = 0.2
 
+[[base_motion]]
+table = [[0.0, 0.0], [1.0, 1.0]]
+record = { dt = 0.01 }
+
+[[quiet]]
+edge = [[0.0, 0.0], [20.0, 0.0]]
+record = { dt = 0.01 }
+
 [rock.granite]
 density = 2650.0
 young = 5e10

@@ -84,8 +84,8 @@ pub fn integrated(rows: &TimeTable) -> TimeTable {
     first.chain(others).collect()
 }
 
-/// Rates: that of the parabola through a row and its neighbours, zero at the first row, where the ground is at rest,
-/// and that of the last piece at the last one.
+/// Rates of the parabola through a row and its neighbours, at the last row through the last three; zero at the first
+/// row, where the ground is at rest.
 fn differentiated(rows: &TimeTable) -> TimeTable {
     let slope = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
     let first = rows.iter().take(1).map(|row| [row[0], 0.0]);
@@ -94,7 +94,15 @@ fn differentiated(rows: &TimeTable) -> TimeTable {
         let slopes = [slope(three[0], three[1]), slope(three[1], three[2])];
         [three[1][0], (steps[1] * slopes[0] + steps[0] * slopes[1]) / (steps[0] + steps[1])]
     });
-    let last = rows.windows(2).last().map(|two| [two[1][0], slope(two[0], two[1])]);
+    let last = rows.windows(2).last().map(|two| {
+        let [length, rate] = [two[1][0] - two[0][0], slope(two[0], two[1])];
+        let bend = rows
+            .iter()
+            .rev()
+            .nth(2)
+            .map_or(0.0, |before| (rate - slope(*before, two[0])) * length / (two[1][0] - before[0]));
+        [two[1][0], rate + bend]
+    });
     first.chain(inner).chain(last).collect()
 }
 

@@ -1,8 +1,9 @@
 //! Checks of base motions, quiet boundaries and free-field columns.
 
-use super::checks::{Check, Names, Range, fail, number, segment, table};
+use super::checks::{Check, Names, Range, fail, number, optional, segment, table};
 use crate::key::Key;
 use crate::limits::{ACCELERATION_MAX, VELOCITY_MAX};
+use crate::record::RecordReading;
 use crate::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
 
 /// What a quiet boundary without a wave is told of a key.
@@ -21,6 +22,7 @@ pub fn validate_base_motions(key: &Key, case: &Case) -> Check {
 }
 
 fn validate_base_motion(key: &Key, base: &BaseMotion, case: &Case) -> Check {
+    validate_reading(key, base.record.as_ref())?;
     let Some(rows) = &base.table else { return missing_table(key, base.file.is_some()) };
     belongs_to_a_file(key, base.record.is_some())?;
     let most = if base.kind == BaseMotionKind::Acceleration { ACCELERATION_MAX } else { VELOCITY_MAX };
@@ -45,6 +47,7 @@ pub fn validate_quiets(key: &Key, case: &Case) -> Check {
 
 fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
     segment(&key.field("edge"), &quiet.edge)?;
+    validate_reading(key, quiet.record.as_ref())?;
     let Some(wave) = quiet.wave else {
         let given = [
             ("table", quiet.table.is_some()),
@@ -85,6 +88,32 @@ pub fn validate_free_fields(key: &Key, sides: &[FreeField]) -> Check {
         }
     }
     Ok(())
+}
+
+/// Most columns and channels of a file.
+const COLUMNS_MAX: usize = 1000;
+
+impl RecordReading {
+    /// Checks what the keys at `key` say.
+    ///
+    /// # Errors
+    /// The first value that cannot be used.
+    pub fn validate(&self, key: &Key) -> Check {
+        optional(key, "dt", self.dt, Range::above(0.0).to(1e6), "s", "0.005 to 0.02 s are usual")?;
+        let columns = self.columns.iter().flatten().map(|column| ("columns", column));
+        let numbers = columns.chain(self.channel.iter().map(|channel| ("channel", channel)));
+        for (name, number) in numbers {
+            if !(1..=COLUMNS_MAX).contains(number) {
+                let message = format!("is {number}, must be at least 1 and at most {COLUMNS_MAX}; the first one is 1");
+                return fail(&key.field(name), message);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn validate_reading(key: &Key, reading: Option<&RecordReading>) -> Check {
+    reading.map_or(Ok(()), |reading| reading.validate(&key.field("record")))
 }
 
 /// Rows of the case need no reading.

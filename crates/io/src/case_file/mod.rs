@@ -10,6 +10,7 @@ use super::geometry_file::{self, Fault, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
 use super::record_file::{self, Record, Wanted};
 use enmm::cosimulation::Cosimulation;
+use enmm::model::case::key::Key;
 use enmm::model::case::record::RecordOrigin;
 use enmm::model::case::{BaseMotionKind, Case, Invalid, JointTrace, Orientations, RecordKeys};
 
@@ -197,18 +198,19 @@ fn merge_record_files(case: &mut Case, source: &mut CaseSource, base_dir: &Path)
     for (k, base) in case.base_motions.iter_mut().enumerate() {
         let kind = Some(base.kind);
         base.kind =
-            merge_record(&format!("base_motion[{k}]"), base.record_keys(), kind, source, base_dir)?.unwrap_or_default();
+            merge_record(&Key::root().field("base_motion").index(k), base.record_keys(), kind, source, base_dir)?
+                .unwrap_or_default();
     }
     for (k, quiet) in case.quiets.iter_mut().enumerate() {
         let kind = quiet.kind;
-        quiet.kind = merge_record(&format!("quiet[{k}]"), quiet.record_keys(), kind, source, base_dir)?;
+        quiet.kind = merge_record(&Key::root().field("quiet").index(k), quiet.record_keys(), kind, source, base_dir)?;
     }
     Ok(())
 }
 
 /// Moves the rows of the file of a ground motion into its table; returns the quantity that its keys stand for.
 fn merge_record(
-    at: &str,
+    at: &Key,
     keys: RecordKeys,
     kind: Option<BaseMotionKind>,
     source: &mut CaseSource,
@@ -230,6 +232,8 @@ fn merge_record(
     let text = read_record(&path).map_err(|message| source.locate(&key(field), &format!("{shown:?}: {message}")))?;
     let kind = of_field.or(kind);
     let reading = keys.reading.take().unwrap_or_default();
+    let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
+    reading.validate(&at.field("record")).map_err(located)?;
     let wanted = Wanted { kind, reading: &reading, scale: keys.scale };
     let record = record_file::parse(&shown, &text, &wanted).map_err(|fault| match fault {
         record_file::Fault::Line(line, message) => CaseError::at(&shown, line, "", message),

@@ -36,19 +36,9 @@ pub fn read(lines: &[&str], wanted: &Wanted) -> Result<Series, Fault> {
     }
     let width = fields(first).count();
     let (columns, mut warnings) = choose(&head, width, wanted)?;
-    let dt = match columns.time {
-        Some(_) => None,
-        None => wanted.reading.dt.map(|dt| (dt, 0)).or(head.step),
-    };
-    let dt = match dt {
-        Some((dt, 0)) => Some(step(dt, 1).map_err(|_| {
-            Fault::Key(
-                "record.dt",
-                format!("is {dt} s, must be greater than 0 and at most 1e6; the time between values"),
-            )
-        })?),
-        Some((dt, line)) => Some(step(dt, line)?),
-        None => None,
+    let dt = match (columns.time, wanted.reading.dt, head.step) {
+        (None, None, Some((dt, line))) => Some(step(dt, line)?),
+        (_, dt, _) => dt,
     };
     let mut series = rows(&lines[from..], from, columns, dt)?;
     if columns.time == Some(0) {
@@ -58,8 +48,10 @@ pub fn read(lines: &[&str], wanted: &Wanted) -> Result<Series, Fault> {
     series.time_unit = if is_time { head.time_unit(columns.time, wanted.reading)? } else { Some(TimeUnit::Second) };
     (series.kind, series.unit) = head.quantity(columns.value, wanted)?;
     series.warnings = warnings;
-    series.taken =
-        columns.time.map_or(String::new(), |time| format!(" {} and", time + 1)) + &format!(" {}", columns.value + 1);
+    series.taken = match columns.time {
+        Some(time) => format!("s {} and {}", time + 1, columns.value + 1),
+        None => format!(" {}", columns.value + 1),
+    };
     Ok(series)
 }
 

@@ -61,7 +61,7 @@ const FORMATS: [Format; 5] = [
     },
 ];
 /// Name of the format without a head of its own.
-const COLUMNS: &str = "columns";
+const COLUMNS: &str = "column";
 
 /// Reads the text of a record.
 ///
@@ -117,7 +117,7 @@ fn converted(series: Series, format: &str, wanted: &Wanted) -> Result<Record, Fa
         );
         return Err(Fault::File(message));
     }
-    let (factor, unit) = units::factor(series.unit, wanted)?;
+    let (factor, unit) = units::factor(series.unit, wanted, format == COLUMNS)?;
     let (second, time_is_stated) = time_factor(series.time_unit, wanted.reading)?;
     let Series { times, values, lines, warnings, taken, .. } = series;
     let milli = if second == 1.0 { "" } else { ", times in ms" };

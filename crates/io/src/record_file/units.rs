@@ -82,7 +82,8 @@ pub fn is_foreign(text: &str) -> bool {
 }
 
 /// Factor to SI units, and what is told of the unit: head, `record.unit` and `scale` must not contradict each other.
-pub fn factor(head: Option<Unit>, wanted: &Wanted) -> Result<(f64, String), Fault> {
+/// `is_open` for files in which `scale` may have converted the unit before heads were read.
+pub fn factor(head: Option<Unit>, wanted: &Wanted, is_open: bool) -> Result<(f64, String), Fault> {
     let key = match &wanted.reading.unit {
         Some(text) => Some(known(text).ok_or_else(|| Fault::Key("record.unit", unknown(text)))?),
         None => None,
@@ -111,13 +112,13 @@ pub fn factor(head: Option<Unit>, wanted: &Wanted) -> Result<(f64, String), Faul
             format!("is {}, and the head of the file says {}; remove it or correct the head", key.name, head.name),
         )),
         (_, Some(unit)) => Ok((unit.factor, format!("in {} as `record.unit` says", unit.name))),
-        (Some(unit), None) => of_head(unit, wanted),
+        (Some(unit), None) => of_head(unit, wanted, is_open),
         (None, None) if wanted.kind.is_none() => Ok((1.0, "as factors on `wave`".to_owned())),
         (None, None) => Ok((1.0, format!("in {} as no unit is named", kind.unit()))),
     }
 }
 
-fn of_head(unit: Unit, wanted: &Wanted) -> Result<(f64, String), Fault> {
+fn of_head(unit: Unit, wanted: &Wanted, is_open: bool) -> Result<(f64, String), Fault> {
     let Unit { name, factor, .. } = unit;
     if factor == 1.0 || wanted.scale == 1.0 && wanted.kind.is_some() {
         return Ok((factor, format!("in {name} as its head says")));
@@ -132,9 +133,12 @@ fn of_head(unit: Unit, wanted: &Wanted) -> Result<(f64, String), Fault> {
     if (wanted.scale.abs() / factor - 1.0).abs() <= SAME_FACTOR {
         return Ok((1.0, format!("in {name} as its head says, converted by `scale`")));
     }
+    if !is_open {
+        return Ok((factor, format!("in {name} as its head says")));
+    }
     let message = format!(
-        "is {}, and the head of the file names {name}, which is converted without it: with `record = {{ unit = {name:?} }}` \
-         it is a factor on the converted values; it would be {} where it converts now",
+        "is {}, and the head of the file names {name}: does it convert? With `record = {{ unit = {name:?} }}` it is a \
+         factor on values that are converted, and {:.4} instead if it has converted them so far",
         wanted.scale,
         wanted.scale / factor
     );
