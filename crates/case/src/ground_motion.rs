@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::expand::motions::{ends, peak};
-use super::record::{BaseMotionKind, Baseline, RecordOrigin, STANDARD_GRAVITY};
+use super::record::{BaseMotionKind, Baseline, RecordOrigin, STANDARD_GRAVITY, VELOCITY_PEAKS};
 use super::{Case, StageKind, TimeTable};
 
 /// Share of the duration of a record by which stages may end before it.
@@ -28,7 +28,7 @@ pub struct GroundMotion {
     pub rows: usize,
     /// First and last time (s) since the start of the stage.
     pub times: [f64; 2],
-    /// Factor of the case on the values, before an outcrop is halved.
+    /// Factor of the case on the values.
     pub scale: f64,
     /// Largest magnitude of `kind` (SI), with the factor of the case and before an outcrop is halved.
     pub peak: f64,
@@ -73,7 +73,6 @@ impl Case {
         let [first, last] = [rows.first()?[0], rows.last()?[0]];
         let (acts, end) = self.acting([first, last], self.motion_stage(stage)?);
         let (kind, size) = origin.read.unwrap_or_else(|| (of.kind, peak(rows)));
-        let before_halving = if origin.halved { 2.0 * of.scale } else { of.scale };
         let scaled = |values: [f64; 2]| values.map(|value| cleaned(of.scale * value));
         let mut motion = GroundMotion {
             key: of.key,
@@ -83,8 +82,8 @@ impl Case {
             unit: origin.unit.clone(),
             rows: rows.len(),
             times: [first, last],
-            scale: before_halving,
-            peak: (before_halving * size).abs(),
+            scale: of.scale,
+            peak: (of.scale * size).abs(),
             halved: origin.halved,
             velocity_peak: (kind != of.kind).then(|| (of.scale * peak(rows)).abs()),
             baseline: origin.corrected.map(|(baseline, ends)| (baseline, scaled(ends))),
@@ -187,7 +186,7 @@ impl GroundMotion {
         } else if self.peak > most {
             doubts.push(format!("the peak of {named} is {}, above {}: {remedy}", self.size(), limit(most)));
         }
-        let [_, fastest] = BaseMotionKind::Velocity.usual_peaks();
+        let [_, fastest] = VELOCITY_PEAKS;
         if let Some(peak) = self.velocity_peak.filter(|peak| *peak > fastest && self.peak <= most) {
             doubts.push(format!(
                 "{named} gives a velocity of {} m/s, above {fastest} m/s: it drifts unless its baseline is corrected, \
@@ -201,7 +200,7 @@ impl GroundMotion {
 
     /// An acceleration of the base that goes on moving it when it is over.
     fn drift(&self, named: &str, most: f64) -> Option<String> {
-        let [_, fastest] = BaseMotionKind::Velocity.usual_peaks();
+        let [_, fastest] = VELOCITY_PEAKS;
         let is_direct = self.kind == BaseMotionKind::Acceleration && self.velocity_peak.is_none();
         let drifts = is_direct && self.peak <= most && self.ends[0].abs() > fastest;
         drifts.then(|| {

@@ -358,25 +358,28 @@ fn a_wave_is_made_of_acceleration_velocity_or_displacement() {
 #[test]
 fn the_record_of_an_outcrop_is_halved_and_other_waves_are_not() {
     let text = sine("t,a (g)\n", |_, t, a| format!("{t},{}", 0.2 * a));
-    let scale = |keys: &str| {
+    let value = |keys: &str| {
         let loaded = wave("r.csv", &text, &format!("acceleration = \"r.csv\"\n{keys}")).expect(keys);
-        (loaded.case.quiets[0].scale, line(&loaded.case))
+        (rows(&loaded)[10][1], line(&loaded.case))
     };
-    let (whole, told) = scale("motion = \"incident\"");
+    let (whole, told) = value("motion = \"incident\"");
     assert!(!told.contains("halved"), "{told}");
-    assert_eq!((scale("").0, whole), (1.0, 1.0));
-    let (half, told) = scale("motion = \"outcrop\"\nscale = 1.5\nrecord = { unit = \"g\" }");
-    assert_eq!(half, 0.75);
+    assert_eq!(value("").0, whole);
+    let (half, told) = value("motion = \"outcrop\"\nscale = 1.5\nrecord = { unit = \"g\" }");
+    assert_eq!(half, 0.5 * whole);
     assert!(told.contains("201 rows times 1.5, 0 to 2 s, peak 2.94 m/s² (0.299 g)"), "{told}");
     assert!(
         told.contains("made a velocity with peak 0.2") && told.contains("halved as the motion of an outcrop"),
         "{told}"
     );
     // Factors on an amplitude, as before, may be those of an outcrop too.
-    let rows = "wave = [0.2, 0]\ntable = [[0, 0], [1, 1], [2, 0]]";
-    let quiets = |more: &str| wave("r.csv", "", &format!("{rows}\n{more}")).expect("read").case.quiets;
-    assert_eq!(quiets("")[0].scale, 1.0);
-    assert_eq!(quiets("motion = \"outcrop\"")[0].scale, 0.5);
+    let factors = "wave = [0.2, 0]\ntable = [[0, 0], [1, 1], [2, 0]]";
+    let quiets = |more: &str| wave("r.csv", "", &format!("{factors}\n{more}")).expect("read").case.quiets;
+    let peak = |more: &str| quiets(more)[0].table.as_ref().expect("rows")[1];
+    assert_eq!(
+        [peak(""), peak("motion = \"incident\""), peak("motion = \"outcrop\"")],
+        [[1.0, 1.0], [1.0, 1.0], [1.0, 0.5]]
+    );
     let told = refused(wave("r.csv", "", "motion = \"outcrop\""));
     assert!(told.contains("quiet[0].motion: belongs to a wave, and the boundary has none"), "{told}");
     assert!(refused(wave("r.csv", "", "kind = \"velocity\"")).contains("quiet[0].table: is missing"));

@@ -51,18 +51,18 @@ fn expand_wave(key: &Key, quiet: &mut Quiet) -> Check {
     }
     let Some(rows) = quiet.table.as_mut() else { return missing_table(key, quiet.file.is_some()) };
     at_least_two(key, rows)?;
-    if let Some(kind) = quiet.kind.take() {
-        let read = std::mem::take(rows);
-        quiet.origin.read = Some((kind, peak(&read)));
-        *rows = match kind {
-            BaseMotionKind::Acceleration => integrated(&read),
-            BaseMotionKind::Velocity => read,
-            BaseMotionKind::Displacement => differentiated(&read),
-        };
-    }
+    // Factors on a velocity are read as one.
+    let kind = quiet.kind.take().unwrap_or(BaseMotionKind::Velocity);
+    let read = std::mem::take(rows);
+    quiet.origin.read = Some((kind, peak(&read)));
+    *rows = match kind {
+        BaseMotionKind::Acceleration => integrated(&read),
+        BaseMotionKind::Velocity => read,
+        BaseMotionKind::Displacement => differentiated(&read),
+    };
     correct(quiet.baseline.take(), BaseMotionKind::Velocity, rows, &mut quiet.origin);
     if quiet.motion.take() == Some(WaveMotion::Outcrop) {
-        quiet.scale *= 0.5;
+        rows.iter_mut().for_each(|row| row[1] *= 0.5);
         quiet.origin.halved = true;
     }
     Ok(())

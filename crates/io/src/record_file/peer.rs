@@ -22,7 +22,7 @@ pub fn is(lines: &[&str]) -> bool {
 fn last_line(lines: &[&str]) -> Option<usize> {
     lines.iter().take(HEAD).position(|line| {
         let line = line.to_uppercase();
-        line.contains("NPTS") && line.contains("DT")
+        line.contains("NPTS") && line.contains("DT") && !line.starts_with(['#', '%', '!'])
     })
 }
 
