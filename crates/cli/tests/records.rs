@@ -14,7 +14,7 @@ fn check_has_a_line_and_the_warnings_of_each_record() {
     checked.assert_printed(&[
         "record base_motion[0]: quake.csv (columns 1 and 2), acceleration in m/s² as no unit is named, 3 rows, 0 to \
          0.008 s, peak 2 m/s² (0.204 g), acts in ",
-        "record base_motion[1]: quake.csv (columns 1 and 2), acceleration in m/s² as no unit is named, 3 rows times 0.01",
+        "acceleration in m/s² as no unit is named, 3 rows times 0.01, 0 to 0.008 s, peak 0.02 m/s²",
         "warning: base_motion[1]: the peak of \"quake.csv\" is 0.02 m/s² (0.00204 g), below 0.01 g",
     ]);
     let json: serde_json::Value =

@@ -134,8 +134,8 @@ fn choose(head: &Head, width: usize, wanted: &Wanted) -> Result<(Columns, Vec<St
     let is_open = others.len() > 1 && fitting.len() != 1;
     let warning = is_open.then(|| {
         format!(
-            "the file has {width} columns, of which {} is read as time and {} as value; if others are meant, name them, \
-             such as `record = {{ columns = [1, {}] }}`",
+            "the file has {width} columns, of which {} is read as time and {} as value; if others are meant, name \
+             them, such as `record = {{ columns = [1, {}] }}`",
             time + 1,
             value + 1,
             others.iter().find(|k| **k != value).map_or(2, |k| k + 1)
@@ -170,13 +170,13 @@ fn counted(times: &[f64], head: &Head, width: usize) -> Result<Option<String>, F
         return Ok(None);
     }
     if width > 2 && !is_named {
-        let message = "has a first column that counts 0, 1, 2, … beside two more: name those of time and value, such as \
-                       `record = { columns = [2, 3] }`";
+        let message = "has a first column that counts 0, 1, 2, … beside two more: name those of time and value, such \
+                       as `record = { columns = [2, 3] }`";
         return Err(Fault::File(message.to_owned()));
     }
     Ok(Some(
-        "the times count 0, 1, 2, …: if they are numbers of rows, give `record = { columns = [2], dt = 0.01 }` with the \
-         time between rows; if they are seconds, `record = { time_unit = \"s\" }`"
+        "the times count 0, 1, 2, …: if they are numbers of rows, give `record = { columns = [2], dt = 0.01 }` with \
+         the time between rows; if they are seconds, `record = { time_unit = \"s\" }`"
             .to_owned(),
     ))
 }

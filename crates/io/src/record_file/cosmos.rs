@@ -96,7 +96,8 @@ fn plausible(dt: f64, line: usize, told: &str, points: usize) -> Result<(f64, us
         // The line has whole seconds.
         Some(seconds) if (lasts - seconds).abs() > 1.5 + 0.02 * seconds => {
             let message = format!(
-                "the time between values is {dt} s, by which the record lasts {lasts} s, and it says approx {seconds} s; correct the head"
+                "the time between values is {dt} s, by which the record lasts {lasts} s, and it says approx \
+                 {seconds} s; correct the head"
             );
             Err(Fault::Line(line, message))
         }

@@ -101,7 +101,8 @@ pub fn factor(head: Option<Unit>, wanted: &Wanted, is_open: bool) -> Result<(f64
     if let Some(unit) = head.filter(|unit| unit.kind != kind) {
         let (name, other) = (unit.name, unit.kind.name());
         let message = format!(
-            "is in {name} by its head, a unit of {other}, and {} is asked for; name it by `{other} = \"…\"`, or choose another of its `columns`",
+            "is in {name} by its head, a unit of {other}, and {} is asked for; name it by `{other} = \"…\"`, or \
+             choose another of its `columns`",
             kind.name()
         );
         return Err(Fault::File(message));
