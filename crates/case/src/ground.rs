@@ -76,8 +76,8 @@ pub struct Quiet {
     /// Directions that it holds in static stages.
     #[serde(default)]
     pub axes: Axes,
-    /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity; with `kind` its direction,
-    /// and then [1.0, 0.0] by default.
+    /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity; with `kind` its direction
+    /// times a factor, [1.0, 0.0] by default.
     #[serde(default)]
     pub wave: Option<[f64; 2]>,
     /// Quantity in the rows along `wave`; default: factors on `wave`.

@@ -164,6 +164,13 @@ fn an_index_before_the_time_was_read_as_the_time() {
     assert_eq!(rows(&spaced)[200][0], 2.0);
     let bare = base("r.csv", sine("", |k, _, a| format!("{k} {a}")), "").expect("read");
     assert!(bare.warnings.iter().any(|warning| warning.contains("the times count 0, 1, 2, …")), "{:?}", bare.warnings);
+    let seconds =
+        "[[stage]]\nname = \"after\"\nkind = \"dynamic\"\nduration = 400.0\n[[base_motion]]\nfile = \"r.csv\"\n";
+    let stated = load("r.csv", sine("", write), &format!("{seconds}record = {{ columns = [1, 3] }}\nscale = 9.81"));
+    assert_eq!(stated.expect("read").warnings, Vec::<String>::new());
+    let bare =
+        load("r.csv", sine("", |k, _, a| format!("{k} {a}")), &format!("{seconds}record = {{ time_unit = \"s\" }}"));
+    assert_eq!(bare.expect("read").warnings, Vec::<String>::new());
 }
 
 #[test]

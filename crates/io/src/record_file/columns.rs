@@ -41,7 +41,8 @@ pub fn read(lines: &[&str], wanted: &Wanted) -> Result<Series, Fault> {
         (_, dt, _) => dt,
     };
     let mut series = rows(&lines[from..], from, columns, dt)?;
-    if columns.time == Some(0) {
+    let is_stated = wanted.reading.columns.is_some() || wanted.reading.time_unit.is_some();
+    if columns.time == Some(0) && !is_stated {
         warnings.extend(counted(&series.times, &head, width)?);
     }
     let is_time = columns.time.is_some();
@@ -110,7 +111,7 @@ fn choose(head: &Head, width: usize, wanted: &Wanted) -> Result<(Columns, Vec<St
             )),
         };
     }
-    let names = if head.names.len() == width { head.names.as_slice() } else { &[] };
+    let names = head.names.as_slice();
     let times: Vec<usize> = (0..names.len()).filter(|k| names[*k].is_time()).collect();
     let time = match times.as_slice() {
         [] if names.first().is_some_and(|name| name.is_index()) => {
@@ -165,7 +166,7 @@ fn asked(columns: &[usize], width: usize, has_step: bool) -> Result<Columns, Fau
 fn counted(times: &[f64], head: &Head, width: usize) -> Result<Option<String>, Fault> {
     let first = times.first().copied().unwrap_or_default();
     let counts = (first == 0.0 || first == 1.0) && times.iter().enumerate().all(|(k, time)| *time == first + k as f64);
-    let is_named = head.names.first().is_some_and(|name| name.is_time() && head.names.len() == width);
+    let is_named = head.names.first().is_some_and(|name| name.is_time());
     if !counts || times.len() < COUNTED || head.names.first().is_some_and(|name| name.time_unit().is_some()) {
         return Ok(None);
     }

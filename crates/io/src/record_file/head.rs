@@ -77,8 +77,11 @@ impl Head {
                 _ if is_sign => continue,
                 (None, Some(first)) if first.parse::<f64>().is_ok() => {
                     let width = fields(line).count();
-                    let named = line_of_names.or(last_comment).map(names).unwrap_or_default();
-                    if line_of_names.is_some() || named.len() == width {
+                    let mut named = line_of_names.or(last_comment).map(names).unwrap_or_default();
+                    while named.last().is_some_and(String::is_empty) {
+                        named.pop();
+                    }
+                    if named.len() == width {
                         head.names = named.into_iter().map(Name).collect();
                     }
                     head.lines = k;
