@@ -45,6 +45,15 @@ fn peer_files_are_read_in_both_forms_of_the_fourth_line() {
     let text = peer("VELOCITY TIME SERIES IN UNITS OF CM/S", "NPTS= 203, DT= .01 SEC", &values);
     let loaded = load("v.txt", text, "[[base_motion]]\nvelocity = \"v.txt\"").expect("read");
     assert!((rows(&loaded)[10][1] - 0.01 * values[10]).abs() < 1e-8);
+    // Such files begin with a residue, and a base is at rest before it moves.
+    let moved: Vec<f64> = values.iter().map(|value| value + 1e-3).collect();
+    let text = peer("VELOCITY TIME SERIES IN UNITS OF CM/S", "NPTS= 203, DT= .01 SEC", &moved);
+    let loaded = load("v.VT2", &text, "[[base_motion]]\nvelocity = \"v.VT2\"").expect("read");
+    assert_eq!(rows(&loaded)[0][1], 0.0);
+    assert!(line(&loaded.case).contains("(PEER, first velocity of 1.0e-5 m/s taken as 0)"), "{}", line(&loaded.case));
+    let text = peer("VELOCITY TIME SERIES IN UNITS OF CM/S", "NPTS= 203, DT= .01 SEC", &values[15..]);
+    let told = refused(load("v.VT2", text.replace("203", "188"), "[[base_motion]]\nvelocity = \"v.VT2\""));
+    assert!(told.starts_with("v.VT2:5: base_motion[0].table[0]: starts with 0.0029"), "{told}");
     let text = peer("DISPLACEMENT TIME SERIES IN UNITS OF CM", "NPTS= 203, DT= .01 SEC", &values);
     assert!(wave("d.DT2", text, "displacement = \"d.DT2\"").is_ok());
     let fused = "-.1000000E-02-.2000000E-02\n 0.30000E-02-0.40000D-02\n";

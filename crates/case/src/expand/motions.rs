@@ -7,9 +7,20 @@ use crate::validate::checks::{Check, fail};
 use crate::validate::ground::{at_least_two, missing_table};
 use crate::{BaseMotion, BaseMotionKind, Case, Quiet, TimeTable};
 
+/// Share of the peak up to which the first velocity of a file is a residue: a base is at rest before it moves, and
+/// velocities of agencies begin with some 1e-4 of their peak.
+const RESIDUE: f64 = 0.01;
+
 /// Whether something of a base motion is yet to be worked out.
 pub fn is_short_base(base: &BaseMotion) -> bool {
-    base.kind == BaseMotionKind::Displacement || base.baseline.is_some()
+    base.kind == BaseMotionKind::Displacement || base.baseline.is_some() || residue(base).is_some()
+}
+
+/// The first velocity of a file that stands for 0.
+fn residue(base: &BaseMotion) -> Option<f64> {
+    let rows = base.table.as_ref().filter(|_| base.kind == BaseMotionKind::Velocity && base.origin.file.is_some())?;
+    let first = rows.first()?[1];
+    (first != 0.0 && first.abs() <= RESIDUE * peak(rows)).then_some(first)
 }
 
 /// Whether something of a wave is yet to be worked out.
@@ -25,8 +36,13 @@ pub fn expand(case: &mut Case) -> Check {
     let root = Key::root();
     for (k, base) in case.base_motions.iter_mut().enumerate().filter(|(_, base)| is_short_base(base)) {
         let key = root.field("base_motion").index(k);
+        let residue = residue(base);
         let Some(rows) = base.table.as_mut() else { return missing_table(&key, base.file.is_some()) };
         at_least_two(&key, rows)?;
+        if let Some(first) = residue {
+            rows[0][1] = 0.0;
+            base.origin.format += &format!(", first velocity of {first:.1e} m/s taken as 0");
+        }
         let was = base.kind;
         if was == BaseMotionKind::Displacement {
             let read = std::mem::take(rows);
