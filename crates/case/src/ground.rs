@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::record::{BaseMotionKind, Baseline, RecordOrigin, RecordReading, WaveMotion};
 use super::{Axes, Case, StageKind, TimeTable};
 
 /// One direction of the plane.
@@ -16,18 +17,6 @@ pub enum Axis {
     X,
     /// Vertical.
     Y,
-}
-
-/// Quantity in the rows of a base motion.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum BaseMotionKind {
-    /// Acceleration (m/s²).
-    #[default]
-    Acceleration,
-    /// Velocity (m/s).
-    Velocity,
 }
 
 /// Motion of the base that carries the model; the model lives in the frame of the base, so that its rock feels the
@@ -46,15 +35,34 @@ pub struct BaseMotion {
     /// a velocity must start at 0 and keeps its last value. This or `file`.
     #[serde(default)]
     pub table: Option<TimeTable>,
-    /// CSV file with time (s) and value in its first two columns, relative to the case file.
+    /// File of a record of this kind, relative to the case file: columns of time (s) and value, or a format of the
+    /// agencies.
     #[serde(default)]
     pub file: Option<PathBuf>,
-    /// Factor on the values, such as 9.81 for a record in g.
+    /// File of a record of acceleration, in place of `kind` and `file`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<PathBuf>,
+    /// File of a record of velocity, in place of `kind` and `file`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<PathBuf>,
+    /// File of a record of displacement, in place of `kind` and `file`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<PathBuf>,
+    /// How the file is read, where it does not say so itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<RecordReading>,
+    /// Correction of a record that does not end at rest; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub baseline: Option<Baseline>,
+    /// Factor on the values, such as 9.81 for a record in g whose file does not say so.
     #[serde(default = "one")]
     pub scale: f64,
     /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there on.
     #[serde(default)]
     pub stage: Option<String>,
+    /// Where the rows come from.
+    #[serde(skip)]
+    pub origin: RecordOrigin,
 }
 
 /// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
@@ -68,22 +76,48 @@ pub struct Quiet {
     /// Directions that it holds in static stages.
     #[serde(default)]
     pub axes: Axes,
-    /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity.
+    /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity; with `kind` its direction
+    /// times a factor, [1.0, 0.0] by default.
     #[serde(default)]
     pub wave: Option<[f64; 2]>,
-    /// Rows of time (s) since the start of the stage and factor on `wave`; linear between, zero outside. This or
-    /// `file`.
+    /// Quantity in the rows along `wave`; default: factors on `wave`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<BaseMotionKind>,
+    /// Rows of time (s) since the start of the stage and factor on `wave`, or value of `kind`; linear between, zero
+    /// outside. This or `file`.
     #[serde(default)]
     pub table: Option<TimeTable>,
-    /// CSV file with time (s) and factor in its first two columns, relative to the case file.
+    /// File of a record of such rows, relative to the case file: columns of time (s) and value, or a format of the
+    /// agencies.
     #[serde(default)]
     pub file: Option<PathBuf>,
+    /// File of a record of acceleration, in place of `kind` and `file`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<PathBuf>,
+    /// File of a record of velocity, in place of `kind` and `file`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<PathBuf>,
+    /// File of a record of displacement, in place of `kind` and `file`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<PathBuf>,
+    /// How the file is read, where it does not say so itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<RecordReading>,
+    /// What the record shows of the wave; default: the incident wave. The motion of an outcrop is halved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<WaveMotion>,
+    /// Correction of a record that does not end at rest; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub baseline: Option<Baseline>,
     /// Factor on the values.
     #[serde(default = "one")]
     pub scale: f64,
     /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there on.
     #[serde(default)]
     pub stage: Option<String>,
+    /// Where the rows come from.
+    #[serde(skip)]
+    pub origin: RecordOrigin,
 }
 
 /// A column of rock beside a vertical side of the model that moves as the free field does; the side is coupled to it by
@@ -97,6 +131,51 @@ pub struct FreeField {
     /// Directions that the side holds in static stages.
     #[serde(default = "horizontal")]
     pub axes: Axes,
+}
+
+/// The keys of a ground motion that name its record and say how it is read.
+pub struct RecordKeys<'a> {
+    /// Keys that name a file, with the quantity that each stands for.
+    pub files: [(&'static str, Option<BaseMotionKind>, &'a mut Option<PathBuf>); 4],
+    /// Its rows.
+    pub table: &'a mut Option<TimeTable>,
+    /// How the file is read.
+    pub reading: &'a mut Option<RecordReading>,
+    /// Factor on the values.
+    pub scale: f64,
+    /// Where the rows come from.
+    pub origin: &'a mut RecordOrigin,
+}
+
+macro_rules! record_keys {
+    ($motion:expr) => {
+        RecordKeys {
+            files: [
+                ("file", None, &mut $motion.file),
+                ("acceleration", Some(BaseMotionKind::Acceleration), &mut $motion.acceleration),
+                ("velocity", Some(BaseMotionKind::Velocity), &mut $motion.velocity),
+                ("displacement", Some(BaseMotionKind::Displacement), &mut $motion.displacement),
+            ],
+            table: &mut $motion.table,
+            reading: &mut $motion.record,
+            scale: $motion.scale,
+            origin: &mut $motion.origin,
+        }
+    };
+}
+
+impl BaseMotion {
+    /// The keys of its record.
+    pub fn record_keys(&mut self) -> RecordKeys<'_> {
+        record_keys!(self)
+    }
+}
+
+impl Quiet {
+    /// The keys of its record.
+    pub fn record_keys(&mut self) -> RecordKeys<'_> {
+        record_keys!(self)
+    }
 }
 
 impl Case {

@@ -6,6 +6,7 @@ mod drawing;
 mod expand;
 mod fingerprint;
 mod ground;
+mod ground_motion;
 mod hoek_brown;
 mod in_situ;
 mod joint_set;
@@ -16,6 +17,7 @@ pub mod philox;
 mod pictures;
 pub mod plausible;
 mod random;
+pub mod record;
 mod validate;
 
 use std::collections::BTreeMap;
@@ -26,7 +28,8 @@ use serde::{Deserialize, Serialize};
 pub use bolt::{Anchorage, Bolt, BoltPattern, Support};
 pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
-pub use ground::{Axis, BaseMotion, BaseMotionKind, FreeField, Quiet};
+pub use ground::{Axis, BaseMotion, FreeField, Quiet, RecordKeys};
+pub use ground_motion::GroundMotion;
 pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_set::{
@@ -35,6 +38,7 @@ pub use joint_set::{
 pub use orientation::{AZIMUTH, Orientation, Orientations, dip_in_section, trace_angle};
 pub use pictures::{PictureKind, Pictures};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
+pub use record::BaseMotionKind;
 pub use validate::Invalid;
 
 /// A closed or open list of points (m).

@@ -157,6 +157,7 @@ fn table(found: &Check) -> String {
     ];
     let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<22} {value}")).collect();
     lines.extend(found.rock_masses.iter().map(rock_mass));
+    lines.extend(found.records.iter().map(|motion| format!("record {}", motion.text())));
     lines.extend(bridges(&found.bridges));
     lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));

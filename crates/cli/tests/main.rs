@@ -18,6 +18,7 @@ mod manual;
 mod new;
 mod output;
 mod pictures;
+mod records;
 mod report;
 mod resume;
 mod run;

@@ -91,6 +91,18 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     })
 }
 
+/// Reads a record, whose head may have names of places in the code page of Western Europe.
+///
+/// # Errors
+/// A message without the file's name: the file cannot be opened, is too large or binary.
+pub fn read_record(path: &Path) -> Result<String, String> {
+    let bytes = read_bytes(path)?;
+    if bytes.contains(&0) {
+        return Err("it is binary, and records are read as text; download it as ASCII or save it as CSV".to_string());
+    }
+    Ok(String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(western).collect()))
+}
+
 /// Reads a DXF drawing, which before 2007 is in the code page that it names.
 ///
 /// # Errors

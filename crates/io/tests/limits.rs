@@ -149,6 +149,17 @@ limit = 1.0
 interval = 0.1
 "#;
 
+/// How files of records are read: keys of which nothing is left when they have been.
+const READINGS: [&str; 2] = [
+    "[[base_motion]]\nrecord = { dt = 0.01 }\n",
+    "[[quiet]]\nedge = [[0.0, 0.0], [20.0, 0.0]]\nrecord = { dt = 0.01 }\n",
+];
+
+/// Cases whose records are not yet read.
+fn unread_as_json() -> [Value; 2] {
+    READINGS.map(|reading| toml::from_str(&format!("{SHORT}{reading}")).expect("TOML"))
+}
+
 /// The case in few words, as it is written.
 fn short_as_json() -> Value {
     toml::from_str(SHORT).expect("TOML")
@@ -170,7 +181,9 @@ fn every_number_of_the_schema_has_a_limit_at_both_ends() {
     for mut json in cases_as_json() {
         visit_numbers(&mut json, "", &mut |name, _| names.extend([name.to_string()]));
     }
-    visit_numbers(&mut short_as_json(), "", &mut |name, _| names.extend([name.to_string()]));
+    for mut json in [vec![short_as_json()], unread_as_json().to_vec()].concat() {
+        visit_numbers(&mut json, "", &mut |name, _| names.extend([name.to_string()]));
+    }
     let mut expected = BTreeSet::new();
     let schema = schema();
     numbers_of_schema(&schema, &schema, "", &mut expected);
@@ -184,6 +197,7 @@ fn every_number_of_the_schema_has_a_limit_at_both_ends() {
     }
     // Other keys of the short case are seen first by what lays bolts and cuts in the rock.
     refuses_extremes(&short_as_json(), &|name| !plain.contains(name));
+    unread_as_json().iter().for_each(|json| refuses_extremes(json, &|name| name.ends_with("record.dt")));
 }
 
 /// Reads a case as files are read: turns short words into plain data and checks them. Keys are those that were written.

@@ -9,6 +9,8 @@ mod geometry_files;
 mod issue_a_message_showed_a_line_of_any_file;
 mod key_reference;
 mod limits;
+mod record_formats;
+mod records;
 mod support;
 mod tables;
 mod tessellation;

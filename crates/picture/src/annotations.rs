@@ -230,7 +230,10 @@ fn facts(simulation: &Simulation) -> Vec<String> {
     let bodies = case.loads.iter().filter(|load| load.kind == LoadKind::Body).filter_map(|load| load.acceleration);
     facts.extend(bodies.map(|[x, y]| format!("body load {}", vector(x, y))));
     facts.extend(case.base_motions.iter().map(|motion| format!("base moves along {:?}", motion.axis).to_lowercase()));
-    let waves = case.quiets.iter().filter_map(|quiet| quiet.wave);
+    let waves = case.quiets.iter().filter_map(|quiet| {
+        let peak = quiet.table.iter().flatten().map(|row| (quiet.scale * row[1]).abs()).fold(0.0, f64::max);
+        Some(quiet.wave?.map(|part| part * peak))
+    });
     facts.extend(waves.map(|[x, y]| format!("wave ({}, {}) m/s comes in", number_text(x), number_text(y))));
     facts.extend(case.in_situ.iter().map(|stress| {
         let [xx, yy, _] = stress.gradient;

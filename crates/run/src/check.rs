@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use enmm::geometry::Point;
 use enmm::model::assemble::{Breaking, Bridge, ignored_traces};
+use enmm::model::case::GroundMotion;
 use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
 use enmm_stability::corners::weak_corners;
@@ -68,6 +69,9 @@ pub struct Check {
     /// Rock that yields by Hoek–Brown.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rock_masses: Vec<RockMass>,
+    /// Ground motions, with where they come from and when they act.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<GroundMotion>,
     /// Rock bridges that can break.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bridges: Vec<BridgeRecord>,
@@ -112,6 +116,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         trace_ends: TraceEndRecord::all(built),
         crumbs: CrumbRecord::all(built),
         rock_masses: rock_masses(simulation.case()),
+        records: simulation.case().ground_motions(),
         bridges: built.bridges.iter().map(BridgeRecord::of).collect(),
         notes: built.notes.iter().cloned().chain(corner_note(simulation)).collect(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),

@@ -16,7 +16,12 @@ from ._library import load_library
 if TYPE_CHECKING:
     from ._model import Model
 
-_FILES = ("domain.geometry_file", "base_motion[].file", "quiet[].file")
+_RECORDS = ("file", "acceleration", "velocity", "displacement")
+_FILES = (
+    "domain.geometry_file",
+    *(f"base_motion[].{key}" for key in _RECORDS),
+    *(f"quiet[].{key}" for key in _RECORDS),
+)
 """Keys whose values are files beside the case."""
 
 

@@ -42,7 +42,7 @@ pub(super) fn base_motions(case: &Case) -> Vec<BaseMotion> {
     let of = |base: &case::BaseMotion| {
         let kind = match base.kind {
             BaseMotionKind::Acceleration => MotionKind::Acceleration,
-            BaseMotionKind::Velocity => MotionKind::Velocity,
+            BaseMotionKind::Velocity | BaseMotionKind::Displacement => MotionKind::Velocity, // by `Case::expand`
         };
         let axis = match base.axis {
             Axis::X => Vector::x(),

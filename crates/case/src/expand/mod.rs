@@ -1,11 +1,13 @@
 //! Expansion of the words of the field in a case into the plain data that the engine builds: dips become angles,
-//! bolt patterns bolts, construction joints joints with a law, K0 a stress. This is the only place that does so.
+//! bolt patterns bolts, construction joints joints with a law, K0 a stress, records accelerations of the base and
+//! velocities of waves. This is the only place that does so.
 
 mod bolts;
 mod cells;
 mod cuts;
 mod in_situ;
 mod joint_sets;
+pub mod motions;
 mod tessellation;
 
 pub use cuts::LAW as CUT_LAW;
@@ -39,6 +41,7 @@ impl Case {
         cuts::expand(self, &mut told)?;
         in_situ::expand(self)?;
         bolts::expand(self, &mut told)?;
+        motions::expand(self)?;
         Ok(told)
     }
 
@@ -75,6 +78,8 @@ impl Case {
             ("cut", !self.cuts.is_empty()),
             ("in_situ", self.in_situ.as_ref().is_some_and(stress)),
             ("bolt_pattern", !self.bolt_patterns.is_empty()),
+            ("base_motion", self.base_motions.iter().any(motions::is_short_base)),
+            ("quiet", self.quiets.iter().any(motions::is_short_wave)),
         ];
         short.iter().find(|(_, is)| *is).map_or(Ok(()), |(name, _)| {
             let message = "is not expanded; load the case through `enmm_io`, or call `Case::expand`";

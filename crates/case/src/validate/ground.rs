@@ -1,9 +1,13 @@
 //! Checks of base motions, quiet boundaries and free-field columns.
 
-use super::checks::{Check, Names, Range, fail, number, segment, table};
+use super::checks::{Check, Names, Range, fail, number, optional, segment, table};
 use crate::key::Key;
 use crate::limits::{ACCELERATION_MAX, VELOCITY_MAX};
+use crate::record::RecordReading;
 use crate::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
+
+/// What a quiet boundary without a wave is told of a key.
+const NO_WAVE: &str = "belongs to a wave, and the boundary has none; add `wave = [1.0, 0.0]` or remove it";
 
 /// Slope of a side, relative to its length, up to which it is vertical.
 const VERTICAL: f64 = 1e-9;
@@ -18,12 +22,11 @@ pub fn validate_base_motions(key: &Key, case: &Case) -> Check {
 }
 
 fn validate_base_motion(key: &Key, base: &BaseMotion, case: &Case) -> Check {
+    validate_reading(key, base.record.as_ref())?;
     let Some(rows) = &base.table else { return missing_table(key, base.file.is_some()) };
-    let (most, unit) = match base.kind {
-        BaseMotionKind::Acceleration => (ACCELERATION_MAX, "m/s²"),
-        BaseMotionKind::Velocity => (VELOCITY_MAX, "m/s"),
-    };
-    rows_within(key, rows, base.scale, most, unit)?;
+    belongs_to_a_file(key, base.record.is_some())?;
+    let most = if base.kind == BaseMotionKind::Acceleration { ACCELERATION_MAX } else { VELOCITY_MAX };
+    rows_within(key, rows, base.scale, most, base.kind.unit())?;
     if base.kind == BaseMotionKind::Velocity && rows[0][1] != 0.0 {
         let message = format!(
             "starts with {} m/s, must start with 0, as the base is at rest before; let the first row be `[{}, 0.0]`",
@@ -44,22 +47,20 @@ pub fn validate_quiets(key: &Key, case: &Case) -> Check {
 
 fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
     segment(&key.field("edge"), &quiet.edge)?;
+    validate_reading(key, quiet.record.as_ref())?;
     let Some(wave) = quiet.wave else {
         let given = [
             ("table", quiet.table.is_some()),
             ("file", quiet.file.is_some()),
             ("scale", quiet.scale != 1.0),
             ("stage", quiet.stage.is_some()),
+            ("record", quiet.record.is_some()),
         ];
-        return match given.iter().find(|(_, there)| *there) {
-            Some((name, _)) => {
-                let message = "belongs to a wave, and the boundary has none; add `wave = [1.0, 0.0]` or remove it";
-                fail(&key.field(name), message)
-            }
-            None => Ok(()),
-        };
+        let given = given.iter().find(|(_, there)| *there);
+        return given.map_or(Ok(()), |(name, _)| fail(&key.field(name), NO_WAVE));
     };
     let Some(rows) = &quiet.table else { return missing_table(key, quiet.file.is_some()) };
+    belongs_to_a_file(key, quiet.record.is_some())?;
     for (i, value) in wave.into_iter().enumerate() {
         let hint = "the particle velocity of the incident wave";
         number(&key.field("wave").index(i), "", value, Range::within(VELOCITY_MAX), "m/s", hint)?;
@@ -89,7 +90,43 @@ pub fn validate_free_fields(key: &Key, sides: &[FreeField]) -> Check {
     Ok(())
 }
 
-fn missing_table(key: &Key, file: bool) -> Check {
+/// Most columns and channels of a file.
+const COLUMNS_MAX: usize = 1000;
+
+impl RecordReading {
+    /// Checks what the keys at `key` say.
+    ///
+    /// # Errors
+    /// The first value that cannot be used.
+    pub fn validate(&self, key: &Key) -> Check {
+        optional(key, "dt", self.dt, Range::above(0.0).to(1e6), "s", "0.005 to 0.02 s are usual")?;
+        let columns = self.columns.iter().flatten().map(|column| ("columns", column));
+        let numbers = columns.chain(self.channel.iter().map(|channel| ("channel", channel)));
+        for (name, number) in numbers {
+            if !(1..=COLUMNS_MAX).contains(number) {
+                let message = format!("is {number}, must be at least 1 and at most {COLUMNS_MAX}; the first one is 1");
+                return fail(&key.field(name), message);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn validate_reading(key: &Key, reading: Option<&RecordReading>) -> Check {
+    reading.map_or(Ok(()), |reading| reading.validate(&key.field("record")))
+}
+
+/// Rows of the case need no reading.
+fn belongs_to_a_file(key: &Key, is_given: bool) -> Check {
+    let message = "says how a file is read, and the rows are in `table`; name a `file`, or remove it";
+    if is_given { fail(&key.field("record"), message) } else { Ok(()) }
+}
+
+/// Fails for a ground motion without rows.
+///
+/// # Errors
+/// Always.
+pub(crate) fn missing_table(key: &Key, file: bool) -> Check {
     if file {
         let message = "the file is not read into the case; load the case through `io::load_case`, or give `table`";
         return fail(&key.field("file"), message);
@@ -99,18 +136,27 @@ fn missing_table(key: &Key, file: bool) -> Check {
 
 /// Checks rows, their factor, and that no product of both is beyond `most`.
 fn rows_within(key: &Key, rows: &TimeTable, scale: f64, most: f64, unit: &str) -> Check {
-    table(&key.field("table"), rows)?;
+    at_least_two(key, rows)?;
     number(key, "scale", scale, Range::within(1e12), "", "1 is the default")?;
-    if rows.len() < 2 {
-        let message = "has 1 row, at least 2 are needed: values are zero outside the rows; add a row";
-        return fail(&key.field("table"), message);
-    }
     for (i, row) in rows.iter().enumerate() {
         if (row[1] * scale).abs() > most {
             let value = row[1] * scale;
             let message = format!("times `scale` is {value:e} {unit}, must be at most {most:e} in magnitude; scale it");
             return fail(&key.field("table").index(i), message);
         }
+    }
+    Ok(())
+}
+
+/// Checks times and values of a ground motion, of which there must be two.
+///
+/// # Errors
+/// The first row that cannot be used.
+pub(crate) fn at_least_two(key: &Key, rows: &TimeTable) -> Check {
+    table(&key.field("table"), rows)?;
+    if rows.len() < 2 {
+        let message = "has 1 row, at least 2 are needed: values are zero outside the rows; add a row";
+        return fail(&key.field("table"), message);
     }
     Ok(())
 }

@@ -4,7 +4,7 @@
 pub(crate) mod bolts;
 pub(crate) mod checks;
 mod drawing;
-mod ground;
+pub(crate) mod ground;
 mod joint_sets;
 mod joints;
 mod loads;

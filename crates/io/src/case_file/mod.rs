@@ -5,12 +5,14 @@ mod reader;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::case_error::{CaseError, read_drawing, read_text};
+use super::case_error::{CaseError, read_drawing, read_record, read_text};
 use super::geometry_file::{self, Fault, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
-use super::record_file;
+use super::record_file::{self, Record, Wanted};
 use enmm::cosimulation::Cosimulation;
-use enmm::model::case::{Case, Invalid, JointTrace, Orientations, plausible};
+use enmm::model::case::key::Key;
+use enmm::model::case::record::RecordOrigin;
+use enmm::model::case::{BaseMotionKind, Case, Invalid, JointTrace, Orientations, RecordKeys, plausible};
 
 /// Largest text of a case (bytes): some 100 000 traces, which take two seconds to read. Files of geometry and records
 /// are read far faster.
@@ -57,6 +59,7 @@ impl LoadedCase {
         case.validate().map_err(located)?;
         warnings.extend(plausible::doubts(&typed));
         let hash = case.fingerprint().map_err(located)?;
+        warnings.extend(case.ground_motions().into_iter().flat_map(|motion| motion.warnings));
         let settings = source.settings.values().cloned().collect();
         Ok(Self { case, typed, source, hash, orientations, warnings, settings })
     }
@@ -193,27 +196,58 @@ fn parse_case_with(
 
 /// Moves the rows of the files of base motions and waves into their tables.
 fn merge_record_files(case: &mut Case, source: &mut CaseSource, base_dir: &Path) -> Result<(), CaseError> {
-    let motions = case.base_motions.iter_mut().map(|base| ("base_motion", &mut base.file, &mut base.table));
-    let waves = case.quiets.iter_mut().map(|quiet| ("quiet", &mut quiet.file, &mut quiet.table));
-    for records in [motions.collect::<Vec<_>>(), waves.collect()] {
-        for (k, (name, file, table)) in records.into_iter().enumerate() {
-            let Some(name_of_file) = file.take() else { continue };
-            let key = |field: &str| format!("{name}[{k}].{field}");
-            let path = base_dir.join(name_of_file);
-            let shown = path.display().to_string();
-            if table.is_some() {
-                let message = format!("the rows are also in {shown:?}, only one can be; remove `table` or `file`");
-                return Err(source.locate(&key("table"), &message));
-            }
-            let text = read_text(&path);
-            let text = text.map_err(|message| source.locate(&key("file"), &format!("{shown:?}: {message}")))?;
-            let record = record_file::parse(&shown, &text)?;
-            source.inputs.push(path);
-            *table = Some(record.rows);
-            source.records.insert(key("table"), (shown, record.lines));
-        }
+    for (k, base) in case.base_motions.iter_mut().enumerate() {
+        let kind = Some(base.kind);
+        base.kind =
+            merge_record(&Key::root().field("base_motion").index(k), base.record_keys(), kind, source, base_dir)?
+                .unwrap_or_default();
+    }
+    for (k, quiet) in case.quiets.iter_mut().enumerate() {
+        let kind = quiet.kind;
+        quiet.kind = merge_record(&Key::root().field("quiet").index(k), quiet.record_keys(), kind, source, base_dir)?;
     }
     Ok(())
+}
+
+/// Moves the rows of the file of a ground motion into its table; returns the quantity that its keys stand for.
+fn merge_record(
+    at: &Key,
+    keys: RecordKeys,
+    kind: Option<BaseMotionKind>,
+    source: &mut CaseSource,
+    base_dir: &Path,
+) -> Result<Option<BaseMotionKind>, CaseError> {
+    let key = |field: &str| format!("{at}.{field}");
+    let mut named = keys.files.into_iter().filter_map(|(field, kind, file)| Some((field, kind, file.take()?)));
+    let Some((field, of_field, file)) = named.next() else { return Ok(kind) };
+    if let Some((other, ..)) = named.next() {
+        let message = format!("`{field}` names a file too, only one can be; remove one of them");
+        return Err(source.locate(&key(other), &message));
+    }
+    let path = base_dir.join(file);
+    let shown = path.display().to_string();
+    if keys.table.is_some() {
+        let message = format!("the rows are also in {shown:?}, only one can be; remove `table` or `{field}`");
+        return Err(source.locate(&key("table"), &message));
+    }
+    let text = read_record(&path).map_err(|message| source.locate(&key(field), &format!("{shown:?}: {message}")))?;
+    let kind = of_field.or(kind);
+    let reading = keys.reading.take().unwrap_or_default();
+    let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
+    reading.validate(&at.field("record")).map_err(located)?;
+    let wanted = Wanted { kind, reading: &reading, scale: keys.scale };
+    let record = record_file::parse(&shown, &text, &wanted).map_err(|fault| match fault {
+        record_file::Fault::Line(line, message) => CaseError::at(&shown, line, "", message),
+        record_file::Fault::Key(name, message) => source.locate(&key(name), &message),
+        record_file::Fault::File(message) => source.locate(&key(field), &format!("{shown:?} {message}")),
+    })?;
+    source.inputs.push(path);
+    let Record { rows, lines, format, unit, time_is_stated, warnings } = record;
+    *keys.table = Some(rows);
+    let file = Some(shown.clone());
+    *keys.origin = RecordOrigin { file, format, unit, time_is_stated, warnings, ..RecordOrigin::default() };
+    source.records.insert(key("table"), (shown, lines));
+    Ok(kind)
 }
 
 /// Moves all that `domain.geometry_file` holds into the case, removes the keys that say how, and returns the warnings.

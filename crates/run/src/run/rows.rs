@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use enmm::geometry::Vector;
-use enmm::model::case::{Axis, BaseMotionKind, StageKind};
+use enmm::model::case::{Axis, StageKind};
 use enmm::model::settle::REST_STEPS;
 use enmm::model::{Case, Simulation, StepReport};
 use enmm_observe::{ENERGIES, REPORT_QUANTITIES, bolts};
@@ -247,15 +247,11 @@ fn base_motions(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
         let is_dynamic = |time: f64| stages.iter().rev().find(|stage| stage.time <= time).is_some_and(|s| !s.is_static);
         let rows = base.table.as_ref()?.iter().map(|[time, value]| (start + time, base.scale * value));
         let points: Vec<(f64, f64)> = rows.filter(|(time, _)| *time <= end && is_dynamic(*time)).collect();
-        let (quantity, unit) = match base.kind {
-            BaseMotionKind::Acceleration => ("base acceleration", "m/s²"),
-            BaseMotionKind::Velocity => ("base velocity", "m/s"),
-        };
         let name = if base.axis == Axis::X { "base x" } else { "base y" };
         (!points.is_empty()).then(|| Series {
             name: name.to_owned(),
-            quantity: quantity.to_owned(),
-            unit: unit.to_owned(),
+            quantity: format!("base {}", base.kind.name()),
+            unit: base.kind.unit().to_owned(),
             points,
         })
     };
