@@ -157,6 +157,11 @@ impl End {
         let at = cross(c - self.place, along) / across;
         (share >= -spare && share <= 1.0 + spare && at.is_finite()).then_some(at)
     }
+
+    /// Whether its last stretch crosses another.
+    fn crosses(&self, other: &Stretch, tolerance: f64) -> bool {
+        self.meeting(other.ends, tolerance).is_some_and(|at| at <= 0.0 && -at <= self.length)
+    }
 }
 
 /// A straight stretch of a line.
@@ -252,7 +257,7 @@ impl Lines {
             let Some(at) = end.meeting(stretch.ends, tolerance) else { continue };
             if at > 0.0 {
                 found.ahead = nearer(found.ahead, (at, stretch.line));
-            } else if -at <= end.length {
+            } else if -at <= end.length.min(list) {
                 found.behind = nearer(found.behind, (-at, stretch.line));
                 crossed.push(stretch.line);
             }
@@ -260,11 +265,13 @@ impl Lines {
         // Twice as far until the nearest line is certain: the work hangs on how close lines lie, not on the distances.
         let mut reach = self.grid.area().sqrt().clamp(tolerance, list.max(tolerance));
         loop {
-            let about = self.about(end, points, reach)?;
+            let mut about = self.about(end, points, reach)?;
             if about.iter().any(|stretch| stretch.distance(end.place) <= tolerance) {
                 return Ok(None);
             }
-            found.beside = beside(end, &about, &crossed);
+            // A line that the trace has crossed there holds it already, however near it runs to the end.
+            about.retain(|stretch| !crossed.contains(&stretch.line) && !end.crosses(stretch, tolerance));
+            found.beside = beside(end, &about);
             if reach >= list || found.beside.is_some_and(|(distance, ..)| distance <= reach) {
                 return Ok(Some(found));
             }
@@ -364,11 +371,9 @@ impl Stretch {
     }
 }
 
-/// The stretch nearest to an end of those whose lines the trace has not crossed: a line that it has crossed holds it
-/// already, however near it runs to the end.
-fn beside(end: &End, about: &[Stretch], crossed: &[EndLine]) -> Option<(f64, EndLine, Point)> {
-    let free = about.iter().filter(|stretch| !crossed.contains(&stretch.line));
-    let nearest = free.map(|stretch| (stretch.distance(end.place), stretch));
+/// The nearest of some stretches to an end, the first of equal ones.
+fn beside(end: &End, about: &[Stretch]) -> Option<(f64, EndLine, Point)> {
+    let nearest = about.iter().map(|stretch| (stretch.distance(end.place), stretch));
     let (distance, stretch) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((distance, stretch.line, stretch.foot(end.place)))
 }
