@@ -69,7 +69,9 @@ pub fn bracket(loaded: &LoadedCase, triangles: usize) -> Result<Bracket, BoundFa
 
 fn failure(loaded: &LoadedCase, error: BoundError) -> BoundFailure {
     match error {
-        BoundError::Case(invalid) | BoundError::Held { invalid, .. } => BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message)),
+        BoundError::Case(invalid) | BoundError::Held { invalid, .. } => {
+            BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message))
+        }
         unsolved => BoundFailure::Unsolved(unsolved),
     }
 }

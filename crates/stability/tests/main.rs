@@ -11,6 +11,7 @@ mod fos_block_on_incline;
 mod hoek_brown_slope;
 mod issue_a_fault_a_millimetre_short_held_a_slope;
 mod issue_rock_without_tension_never_rested;
+mod issue_the_mesh_decided_about_an_end;
 mod kinematics;
 mod limit_analysis;
 mod slips_before_it_holds;

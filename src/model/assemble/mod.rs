@@ -80,7 +80,8 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     enmm_lanes::requested().map_err(|message| Invalid { key: enmm_lanes::VARIABLE.to_owned(), message })?;
     case.validate()?;
     integrators.refusal(case).map_or(Ok(()), Err)?;
-    let geometry::Plane { mesh, mut arrangement, joints, ends, distances, crumbs } = geometry::arrange_case(case, tell)?;
+    let geometry::Plane { mesh, mut arrangement, joints, ends, distances, crumbs } =
+        geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
     let mut notes = [case.reader_notes.clone(), warnings::notes(&noding, (&ends, &distances), &crumbs)].concat();
