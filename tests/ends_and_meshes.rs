@@ -63,9 +63,9 @@ fn map(side: f64, traces: usize, length: f64, seed: u64) -> String {
 /// A map as large as real ones was refused at 18 m, "lines lie so close together", and a real one at 2 m as not finite.
 #[test]
 fn a_map_of_5000_traces_builds_on_meshes_of_any_size() {
-    let case = read(&map(60.0, 5000, 2.5, 1), Path::new(""));
-    let models =
-        by_extent([[2.0, 18.0, 50.0], [1.0, 18.0, 50.0], [0.7, 18.0, 400.0]]).map(|size| on_mesh(&case, size, 0.01));
+    let case = read(&map(400.0, 5000, 16.0, 1), Path::new(""));
+    let sizes = by_extent([[8.0, 18.0, 50.0], [4.0, 18.0, 50.0], [2.0, 18.0, 60.0]]);
+    let models = sizes.map(|size| on_mesh(&case, size, 0.16));
     let ends = models.each_ref().map(|model| model.built().ends.len());
     assert!(ends[0] > 1000 && ends == [ends[0]; 3], "{ends:?}");
 }

@@ -100,12 +100,11 @@ pub fn join_ends(
 
 /// Takes out the points beside the ends of a trace that lie on them, within a tolerance (m): they give no direction.
 fn part_ends(points: &mut Vec<Point>, tolerance: f64) {
-    let is_one = |a: Point, b: Point| (b - a).norm() <= tolerance;
-    while points.len() > 2 && is_one(points[0], points[1]) {
-        points.remove(1);
-    }
-    while points.len() > 2 && is_one(points[points.len() - 2], points[points.len() - 1]) {
-        points.remove(points.len() - 2);
+    for _ in 0..2 {
+        let Some((&end, others)) = points.split_first() else { return };
+        let on_it = others.iter().take_while(|&other| (other - end).norm() <= tolerance).count();
+        points.drain(1..1 + on_it.min(points.len().saturating_sub(2)));
+        points.reverse();
     }
 }
 
