@@ -99,7 +99,7 @@ fn a_search_warns_of_the_end_that_holds_it() {
 
 #[test]
 fn a_length_that_is_given_decides() {
-    for (given, joins) in [("extend_ends = 0.6", true), ("extend_ends = 0.4", false), ("extend_ends = 0", false)] {
+    for (given, joins) in [("extend_ends = 0.6", true), ("extend_ends = 0.2", false), ("extend_ends = 0", false)] {
         let found = bound(&case(&(slope(0.5, 2.0, given) + LOOSE))).expect("a bound");
         assert_eq!(found.level_tops.factor.value() < 1.0, joins, "{given}");
         assert!(found.ends.is_some(), "{given}");
