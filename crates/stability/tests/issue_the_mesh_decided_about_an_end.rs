@@ -8,15 +8,14 @@ use enmm::model::Case;
 use enmm_stability::limit_analysis::{BoundError, Factor, bound, bounds};
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
-/// A wedge on a fault that stops before the face, a distance (m) along the fault, and below it another wedge, whose
-/// joints are whole and rough.
+/// A wedge on a fault that stops before the face, a distance (m) along the fault.
 fn slope(short: f64, mesh: f64, more: &str) -> String {
     let (dx, dy) = (15.2 / 15.2f64.hypot(9.49801), 9.49801 / 15.2f64.hypot(9.49801));
     let (x, y) = (0.8 + short * dx, 2.0 + short * dy);
     format!(
         "title = \"t\"\n[domain]\noutline = [[-15, -8], [40, -8], [40, 20], [8, 20], [0, 0], [-15, 0]]\n\
-         joint_law = \"joints\"\n{more}\n[mesh]\nsize = {mesh:?}\n[[joint]]\npoints = [[{x:?}, {y:?}], [16.0, 11.49801]]\n\
-         law = \"fault\"\n[[joint]]\npoints = [[16.0, 11.49801], [16.0, 20.0]]\n[rock.gneiss]\ndensity = 2650\n\
+         joint_law = \"joints\"\n{more}\n[mesh]\nsize = {mesh:?}\n[[joint]]\n\
+         points = [[{x:?}, {y:?}], [16.0, 11.49801]]\nlaw = \"fault\"\n[[joint]]\npoints = [[16.0, 11.49801], [16.0, 20.0]]\n[rock.gneiss]\ndensity = 2650\n\
          young = 20e9\npoisson = 0.25\n[joint_law.joints]\nfriction_deg = 35\n[joint_law.fault]\nfriction_deg = 30\n\
          [[fix]]\nedge = [[-15, -8], [40, -8]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration_max = 10\n"
     )
