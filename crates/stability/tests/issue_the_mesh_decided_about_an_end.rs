@@ -15,7 +15,8 @@ fn slope(short: f64, mesh: f64, more: &str) -> String {
     format!(
         "title = \"t\"\n[domain]\noutline = [[-15, -8], [40, -8], [40, 20], [8, 20], [0, 0], [-15, 0]]\n\
          joint_law = \"joints\"\n{more}\n[mesh]\nsize = {mesh:?}\n[[joint]]\n\
-         points = [[{x:?}, {y:?}], [16.0, 11.49801]]\nlaw = \"fault\"\n[[joint]]\npoints = [[16.0, 11.49801], [16.0, 20.0]]\n[rock.gneiss]\ndensity = 2650\n\
+         points = [[{x:?}, {y:?}], [16.0, 11.49801]]\nlaw = \"fault\"\n[[joint]]\n\
+         points = [[16.0, 11.49801], [16.0, 20.0]]\n[rock.gneiss]\ndensity = 2650\n\
          young = 20e9\npoisson = 0.25\n[joint_law.joints]\nfriction_deg = 35\n[joint_law.fault]\nfriction_deg = 30\n\
          [[fix]]\nedge = [[-15, -8], [40, -8]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration_max = 10\n"
     )
