@@ -114,7 +114,7 @@ fn traces_and_slopes_give_the_blocks_on_which_noders_agree(data: &Path) {
 
 /// The same ends are joined, and all blocks above twice one least area (m²) are as many, on every mesh.
 fn the_mesh_changes_neither_ends_nor_blocks(data: &Path) {
-    let maps = [
+    let maps: [(&str, [f64; 3]); 5] = [
         ("traces/kb7", [1.0, 2.0, 5.0]),
         ("traces/kb11", [1.0, 2.0, 5.0]),
         ("traces/getaberget_20m_1_1", [1.0, 2.0, 18.0]),
