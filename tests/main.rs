@@ -20,6 +20,7 @@ mod cosimulation;
 mod crossings;
 mod crumbs;
 mod determinism;
+mod ends_and_meshes;
 mod fast_failures;
 mod found_contacts;
 mod fracture;

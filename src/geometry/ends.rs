@@ -16,6 +16,9 @@ const COPY_COSINE: f64 = 1.0 - 1e-6;
 /// Comparisons of points that sorting a stretch near an end and measuring its distances take the time of.
 const COMPARISONS: usize = 12;
 
+/// Short stretches in a cell of the grid about the ends, where they lie evenly.
+const STRETCHES_PER_CELL: f64 = 2.0;
+
 /// Distances that decide what becomes of an end (m).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct EndDistances {
@@ -77,13 +80,14 @@ pub fn join_ends(
     distances: &EndDistances,
     is_rock: impl Fn(Point) -> bool,
 ) -> Result<Vec<NearEnd>, GeometryError> {
+    traces.iter_mut().for_each(|points| part_ends(points, distances.tolerance));
     let mut lines = Lines::new(outlines, traces, distances);
     let mut ends = Vec::new();
     for trace in TraceId::all(traces.len()) {
         for last in [false, true] {
             let points = &mut *traces[trace.index()];
             let Some(end) = End::of(points, trace, last).filter(|end| is_rock(end.place)) else { continue };
-            let Some((near, way)) = lines.look(&end)? else { continue };
+            let Some((near, way)) = lines.look(&end, points)? else { continue };
             if near.change != EndChange::Kept {
                 lines.replace(&end, &way);
                 replace(points, last, &way);
@@ -92,6 +96,16 @@ pub fn join_ends(
         }
     }
     Ok(ends)
+}
+
+/// Takes out the points beside the ends of a trace that lie on them, within a tolerance (m): they give no direction.
+fn part_ends(points: &mut Vec<Point>, tolerance: f64) {
+    for _ in 0..2 {
+        let Some((&end, others)) = points.split_first() else { return };
+        let on_it = others.iter().take_while(|&other| (other - end).norm() <= tolerance).count();
+        points.drain(1..1 + on_it.min(points.len().saturating_sub(2)));
+        points.reverse();
+    }
 }
 
 /// Replaces the first or the last point by those of a way that leads there.
@@ -115,6 +129,8 @@ struct End {
     direction: Vector,
     /// Length of the stretch (m).
     length: f64,
+    /// Length of the trace (m).
+    whole: f64,
 }
 
 impl End {
@@ -126,7 +142,8 @@ impl End {
         let along = place - from;
         let length = along.norm();
         let is_open = points[0] != points[n - 1];
-        (is_open && length > 0.0).then(|| Self { trace, last, place, from, direction: along / length, length })
+        let whole = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        (is_open && length > 0.0).then(|| Self { trace, last, place, from, direction: along / length, length, whole })
     }
 
     /// Distance (m) from the end along its direction, negative backwards, at which its line meets a segment; the ends
@@ -138,6 +155,11 @@ impl End {
         let spare = tolerance / along.norm();
         let at = cross(c - self.place, along) / across;
         (share >= -spare && share <= 1.0 + spare && at.is_finite()).then_some(at)
+    }
+
+    /// Whether its last stretch crosses another.
+    fn crosses(&self, other: &Stretch, tolerance: f64) -> bool {
+        self.meeting(other.ends, tolerance).is_some_and(|at| at <= 0.0 && -at <= self.length)
     }
 }
 
@@ -180,24 +202,27 @@ impl Lines {
             stretches.extend(points.windows(2).map(|pair| Stretch { ends: [pair[0], pair[1]], line }));
             outermost.push([first, (stretches.len() as u32).saturating_sub(1)]);
         }
-        let (low, high) = polygon::bounds(outlines.as_flattened());
-        let grid = CellGrid::new(low, high, distances.list);
         let ends = stretches.iter().map(|stretch| (stretch.ends[0], stretch.ends[1]));
+        let (low, high) = polygon::bounds(outlines.as_flattened());
+        let area = (high - low).product().max(distances.tolerance.powi(2));
+        let grid = CellGrid::new(low, high, (STRETCHES_PER_CELL * area / stretches.len() as f64).sqrt());
         let near = Groups::of_edges(&grid, ends, distances.tolerance);
         let work = Work::for_lines(stretches.len());
         Self { stretches, outermost, grid, near, added: BTreeMap::new(), distances: *distances, work }
     }
 
-    /// What becomes of an end, and the points that take its place; nothing where it is on a line, or far from all.
+    /// What becomes of an end of a trace through some points, and those that take its place; nothing where it is on a
+    /// line, or far from all.
     ///
     /// # Errors
     /// Too many lines near each other.
-    fn look(&mut self, end: &End) -> Result<Option<(NearEnd, Vec<Point>)>, GeometryError> {
-        Ok(self.find(end)?.and_then(|found| self.judge(end, found)))
+    fn look(&mut self, end: &End, points: &[Point]) -> Result<Option<(NearEnd, Vec<Point>)>, GeometryError> {
+        Ok(self.find(end, points)?.and_then(|found| self.judge(end, found)))
     }
 
     fn judge(&self, end: &End, Found { ahead, behind, beside }: Found) -> Option<(NearEnd, Vec<Point>)> {
         let EndDistances { join, list, .. } = self.distances;
+        let join = join.min(0.5 * end.whole);
         let near = |gap, line, meets, change| NearEnd { trace: end.trace, place: end.place, gap, line, meets, change };
         let along = |gap: f64| end.place + end.direction * gap;
         let gap = |found: Option<(f64, EndLine)>| found.map_or(f64::INFINITY, |(gap, _)| gap);
@@ -222,51 +247,71 @@ impl Lines {
         nearest.map(|(gap, line, meets)| (near(gap, line, meets, EndChange::Kept), Vec::new()))
     }
 
-    /// The lines about an end; nothing where it is on one.
-    fn find(&mut self, end: &End) -> Result<Option<Found>, GeometryError> {
-        let tolerance = self.distances.tolerance;
-        let about = self.about(end)?;
-        if about.iter().any(|stretch| stretch.distance(end.place) <= tolerance) {
-            return Ok(None);
-        }
+    /// The lines about an end of a trace through some points; nothing where it is on one.
+    fn find(&self, end: &End, points: &[Point]) -> Result<Option<Found>, GeometryError> {
+        let EndDistances { tolerance, list, .. } = self.distances;
         let mut found = Found::default();
         let mut crossed = Vec::new();
-        for stretch in &about {
+        for stretch in &self.on_the_way(end, points)? {
             let Some(at) = end.meeting(stretch.ends, tolerance) else { continue };
             if at > 0.0 {
                 found.ahead = nearer(found.ahead, (at, stretch.line));
-            } else if -at <= end.length {
+            } else if -at <= end.length.min(list) {
                 found.behind = nearer(found.behind, (-at, stretch.line));
                 crossed.push(stretch.line);
             }
         }
-        // A line that the trace has crossed holds it already, however near it runs to the end.
-        for stretch in about.iter().filter(|stretch| !crossed.contains(&stretch.line)) {
-            let distance = stretch.distance(end.place);
-            if found.beside.is_none_or(|(least, ..)| distance < least) {
-                found.beside = Some((distance, stretch.line, stretch.foot(end.place)));
+        // Twice as far until the nearest line is certain: the work hangs on how close lines lie, not on the distances.
+        let mut reach = self.grid.area().sqrt().clamp(tolerance, list.max(tolerance));
+        loop {
+            let mut about = self.about(end, points, reach)?;
+            if about.iter().any(|stretch| stretch.distance(end.place) <= tolerance) {
+                return Ok(None);
             }
+            // A line that the trace has crossed there holds it already, however near it runs to the end.
+            about.retain(|stretch| !crossed.contains(&stretch.line) && !end.crosses(stretch, tolerance));
+            found.beside = beside(end, &about);
+            if reach >= list || found.beside.is_some_and(|(distance, ..)| distance <= reach) {
+                return Ok(Some(found));
+            }
+            reach = (2.0 * reach).min(list);
         }
-        Ok(Some(found))
     }
 
-    /// Stretches of other lines near an end.
-    fn about(&mut self, end: &End) -> Result<Vec<Stretch>, GeometryError> {
-        let mut near: Vec<u32> = Vec::new();
-        self.grid.visit_square(end.place, self.distances.list, |cell| {
-            near.extend(self.near.get(cell));
-            near.extend(self.added.get(&cell).into_iter().flatten());
-        });
+    /// Stretches of other lines along the last stretch of a trace and ahead of it.
+    fn on_the_way(&self, end: &End, points: &[Point]) -> Result<Vec<Stretch>, GeometryError> {
+        let EndDistances { tolerance, list, .. } = self.distances;
+        let at = |distance: f64| end.place + end.direction * distance;
+        let mut near = Vec::new();
+        let visit = |cell| self.put(cell, &mut near);
+        self.grid.visit_edge(at(-end.length.min(list)), at(list), tolerance, visit);
+        self.others(near, end, points)
+    }
+
+    /// Stretches of other lines in the cells within a distance (m) of an end.
+    fn about(&self, end: &End, points: &[Point], reach: f64) -> Result<Vec<Stretch>, GeometryError> {
+        let mut near = Vec::new();
+        self.grid.visit_square(end.place, reach, |cell| self.put(cell, &mut near));
+        self.others(near, end, points)
+    }
+
+    /// Adds the stretches of a cell to a list.
+    fn put(&self, cell: usize, near: &mut Vec<u32>) {
+        near.extend(self.near.get(cell));
+        near.extend(self.added.get(&cell).into_iter().flatten());
+    }
+
+    /// Those of some stretches that are of other lines near an end, once each.
+    fn others(&self, mut near: Vec<u32>, end: &End, points: &[Point]) -> Result<Vec<Stretch>, GeometryError> {
+        let EndDistances { tolerance, list, .. } = self.distances;
         self.work.take(COMPARISONS * near.len(), end.place)?;
         near.sort_unstable();
         near.dedup();
-        let stretches = near.iter().map(|&k| self.stretches[k as usize]);
-        let is_other = |stretch: &Stretch| {
-            stretch.line != EndLine::Trace(end.trace)
-                && stretch.distance(end.place) < self.distances.list
-                && !stretch.is_copy(end, self.distances.tolerance)
+        let is_other = |stretch: &Stretch| match stretch.line {
+            EndLine::Trace(trace) if trace == end.trace => stretch.is_far_along(end, points, list),
+            _ => stretch.distance(end.place) < list && !stretch.is_copy(end, tolerance),
         };
-        Ok(stretches.filter(is_other).collect())
+        Ok(near.iter().map(|&k| self.stretches[k as usize]).filter(is_other).collect())
     }
 
     /// Lets the trace of an end go the way instead.
@@ -298,6 +343,22 @@ impl Stretch {
         segment::foot(p, self.ends[0], self.ends[1])
     }
 
+    /// Whether it is part of the trace of an end, near the end, and farther than that from it along the trace.
+    fn is_far_along(&self, end: &End, points: &[Point], list: f64) -> bool {
+        let mut back = 0.0;
+        let mut farther = |pair: [Point; 2]| {
+            let is_it = pair == self.ends || [pair[1], pair[0]] == self.ends;
+            let starts = back;
+            back += (pair[1] - pair[0]).norm();
+            is_it && starts > list
+        };
+        if self.distance(end.place) >= list {
+            return false;
+        }
+        let mut pairs = points.windows(2).map(|pair| [pair[0], pair[1]]);
+        if end.last { pairs.rev().any(&mut farther) } else { pairs.any(&mut farther) }
+    }
+
     /// Whether it ends where the end lies and runs back along its trace.
     fn is_copy(&self, end: &End, tolerance: f64) -> bool {
         let [a, b] = self.ends;
@@ -307,6 +368,13 @@ impl Stretch {
         };
         self.line != EndLine::Outline && (back(a, b) || back(b, a))
     }
+}
+
+/// The nearest of some stretches to an end, the first of equal ones.
+fn beside(end: &End, about: &[Stretch]) -> Option<(f64, EndLine, Point)> {
+    let nearest = about.iter().map(|stretch| (stretch.distance(end.place), stretch));
+    let (distance, stretch) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((distance, stretch.line, stretch.foot(end.place)))
 }
 
 fn nearer(found: Option<(f64, EndLine)>, other: (f64, EndLine)) -> Option<(f64, EndLine)> {

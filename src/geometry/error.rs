@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// A coordinate is infinite or not a number.
-    #[error("{what} {index} has a coordinate that is not finite ({x}, {y}): correct it in the input")]
+    #[error("{what} {index} has a coordinate that is not finite ({x}, {y})")]
     NotFinite {
         /// Item that the point belongs to.
         what: String,

@@ -244,10 +244,15 @@ pub struct Domain {
     #[serde(default)]
     pub snap_tolerance: Option<f64>,
     /// Distance (m) within which an end of a trace that almost meets the outline or another trace is extended or
-    /// trimmed to it; default a tenth of the mesh size, 0 keeps what is drawn.
+    /// trimmed to it; default 0.002 of the bounding-box diagonal, 0 keeps what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extend_ends: Option<f64>,
-    /// Joint law of rock bridges between ends that stop in the rock, nearer than the mesh size to the outline or
+    /// Distance (m) within which an end that stops in the rock before the outline or another trace is named in a note,
+    /// tried joined beside the bounds of `fos` and `bound`, and bridged by `bridge_law`; default 0.02 of the
+    /// bounding-box diagonal, at least `extend_ends`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near_ends: Option<f64>,
+    /// Joint law of rock bridges between ends that stop in the rock, nearer than `near_ends` to the outline or
     /// another trace, and that line; default: the rock there is elastic and never breaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bridge_law: Option<String>,

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm::model::Simulation;
+use enmm_io::numbers::three_digits;
 use enmm_run::check::{BridgeRecord, Check};
 use enmm_run::rock_mass::RockMass;
 use enmm_run::{Folder, Observer};
@@ -87,6 +88,12 @@ fn memory(found: &Check) -> String {
     format!("{all}: model {model}, state 2 × {state}, buffers {buffers}")
 }
 
+/// Within which distances ends of joints are joined to a line, and listed.
+fn ends(found: &Check) -> String {
+    let distance = |value: f64| three_digits(value).unwrap_or_else(|small| format!("{small:.2e}"));
+    format!("joined to a line within {} m, listed within {} m", distance(found.extend_ends), distance(found.near_ends))
+}
+
 /// A rock mass by Hoek–Brown, and its equivalent strength.
 fn rock_mass(mass: &RockMass) -> String {
     let RockMass { rock, mb, s, a, height, .. } = mass;
@@ -153,6 +160,7 @@ fn table(found: &Check) -> String {
         ("tiny blocks", found.tiny_blocks.to_string()),
         ("merged vertices", found.merged_vertices.to_string()),
         ("ignored joints", found.ignored_joints.to_string()),
+        ("ends of joints", ends(found)),
         ("memory (MB)", memory(found)),
     ];
     let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<22} {value}")).collect();

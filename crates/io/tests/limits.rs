@@ -168,7 +168,8 @@ fn short_as_json() -> Value {
 /// The valid case, and the same with the other of keys that exclude each other.
 fn cases_as_json() -> [Value; 2] {
     let own = CASE.replacen("size = 1.0\n", "size = 1.0\nleast_block = 1e-4\n", 1);
-    let own = own.replacen("snap_tolerance = 1e-6\n", "snap_tolerance = 1e-6\nextend_ends = 0.01\n", 1);
+    let own =
+        own.replacen("snap_tolerance = 1e-6\n", "snap_tolerance = 1e-6\nextend_ends = 0.01\nnear_ends = 0.1\n", 1);
     let own = own.replacen("damping = 0.05\n", "damping = 0.05\nwater = { level = 1.0 }\n", 1);
     let drained = own.replacen("water = { level = 1.0 }", "water = { table = [[0.0, 1.0], [10.0, 0.5]] }", 1);
     let other = drained.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;

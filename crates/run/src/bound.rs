@@ -69,7 +69,9 @@ pub fn bracket(loaded: &LoadedCase, triangles: usize) -> Result<Bracket, BoundFa
 
 fn failure(loaded: &LoadedCase, error: BoundError) -> BoundFailure {
     match error {
-        BoundError::Case(invalid) => BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message)),
+        BoundError::Case(invalid) | BoundError::Held { invalid, .. } => {
+            BoundFailure::Case(loaded.source.locate(&invalid.key, &invalid.message))
+        }
         unsolved => BoundFailure::Unsolved(unsolved),
     }
 }
@@ -129,6 +131,8 @@ pub fn bound_record(bound: &Bound) -> Value {
         "bare_share": bound.bare.as_ref().map(|bare| bare.share),
         "bare_interfaces": bound.bare.as_ref().map(|bare| bare.interfaces),
         "estimate": null,
+        "factor_ends_drawn": bound.ends.as_ref().map(|ends| factor(ends.drawn)),
+        "factor_ends_joined": bound.ends.as_ref().map(|ends| factor(ends.joined)),
         "blocks": bound.blocks[0],
         "free_blocks": bound.blocks[1],
         "interfaces": bound.interfaces,
@@ -147,7 +151,7 @@ pub fn bound_record(bound: &Bound) -> Value {
 }
 
 /// A factor with a word on the way in which it is or is not one.
-fn factor(factor: Factor) -> Value {
+pub(super) fn factor(factor: Factor) -> Value {
     let (factor, end, limit) = match factor {
         Factor::Found(factor) => (Some(factor), "found", factor),
         Factor::AtLeast(least) => (None, "at_least", least),

@@ -62,6 +62,11 @@ pub struct Check {
     pub memory_bytes: u64,
     /// That memory by part; the state counts once.
     pub memory: Vec<MemoryPart>,
+    /// Distance (m) within which ends of joints were joined to a line, `domain.extend_ends`, and that within which they
+    /// are listed, `domain.near_ends`.
+    pub extend_ends: f64,
+    /// See `extend_ends`.
+    pub near_ends: f64,
     /// Ends of joints near the outline or another joint.
     pub trace_ends: Vec<TraceEndRecord>,
     /// Blocks below the least area.
@@ -113,6 +118,8 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         ignored_joints: ignored_traces(&built.noding).len(),
         memory_bytes: (model.bytes() + 2 * state.bytes() + workspace.bytes()) as u64,
         memory: memory(simulation, &state, &workspace),
+        extend_ends: built.end_distances.join,
+        near_ends: built.end_distances.list,
         trace_ends: TraceEndRecord::all(built),
         crumbs: CrumbRecord::all(built),
         rock_masses: rock_masses(simulation.case()),

@@ -9,7 +9,7 @@ use std::{fs, io};
 
 use serde_json::{Value, json};
 
-use super::bound::{bound_record, bracket_record};
+use super::bound::{bound_record, bracket_record, factor};
 use super::folder::Folder;
 pub use super::found::{Found, remedy};
 use super::input::input_record;
@@ -300,10 +300,13 @@ fn others_record(reduction: &Reduction) -> serde_json::Map<String, Value> {
             "strength": carrying.corner.strength,
         })
     });
+    let ends = reduction.ends.as_ref();
     let others = [
         ("factor_corners_hold", json!(held.and_then(Series::factor))),
         ("corners_hold", json!(held.map(series_record))),
         ("corner_contacts", carrying.collect()),
+        ("factor_ends_drawn", json!(ends.map(|ends| factor(ends.drawn)))),
+        ("factor_ends_joined", json!(ends.map(|ends| factor(ends.joined)))),
         ("factor_lost", json!(reduction.lost.as_ref().and_then(Series::factor))),
         ("lost", json!(reduction.lost.as_ref().map(series_record))),
         ("first_yield", json!(reduction.first_yield())),

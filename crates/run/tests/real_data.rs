@@ -112,6 +112,33 @@ fn traces_and_slopes_give_the_blocks_on_which_noders_agree(data: &Path) {
     }
 }
 
+/// The same ends are joined, and all blocks above twice one least area (m²) are as many, on every mesh.
+fn the_mesh_changes_neither_ends_nor_blocks(data: &Path) {
+    let maps: [(&str, [f64; 3]); 5] = [
+        ("traces/kb7", [1.0, 2.0, 5.0]),
+        ("traces/kb11", [1.0, 2.0, 5.0]),
+        ("traces/getaberget_20m_1_1", [1.0, 2.0, 18.0]),
+        ("slopes/tyrol_gar_slope_small", [5.0, 8.0, 20.0]),
+        ("slopes/tyrol_gar_slope_medium", [5.0, 8.0, 20.0]),
+    ];
+    for (name, sizes) in maps {
+        let least = (sizes[0] / 20.0).powi(2);
+        let found = sizes.map(|size| {
+            let text = case(&format!("{name}.json"), size, -1000.0, 30.0);
+            let text = text.replacen("[rock.rock]", &format!("least_block = {least}\n[rock.rock]"), 1);
+            let loaded = enmm_io::parse_case(&text, "real.toml", data).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let simulation = Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{name}, {size} m: {e:?}"));
+            let covers = &simulation.model().covers;
+            let blocks = covers.blocks().filter(|&block| covers.block_area(block) > 2.0 * least).count();
+            (blocks, simulation.built().ends.clone())
+        });
+        println!("{name}: {} blocks, {} ends", found[0].0, found[0].1.len());
+        assert_eq!(found[0].0, found[1].0, "{name}: blocks on {sizes:?} m");
+        assert_eq!(found[0].0, found[2].0, "{name}: blocks on {sizes:?} m");
+        assert!(found[1].1 == found[0].1 && found[2].1 == found[0].1, "{name}: ends on {sizes:?} m");
+    }
+}
+
 fn geometry_is_read_whole(data: &Path) {
     for (name, traces) in [("traces/kb7", 240), ("traces/kb11", 707), ("slopes/tyrol_gar_slope_medium", 568)] {
         let text = case(&format!("{name}.json"), 1.0, 0.0, 30.0);
@@ -171,6 +198,7 @@ fn main() {
         trial("geometry_is_read_whole", geometry_is_read_whole),
         trial("cover_cases_are_counted_as_expected", cover_cases_are_counted_as_expected),
         trial("traces_and_slopes_give_the_expected_blocks", traces_and_slopes_give_the_blocks_on_which_noders_agree),
+        trial("the_mesh_changes_neither_ends_nor_blocks", the_mesh_changes_neither_ends_nor_blocks),
         trial("long_kb11_settles_under_gravity", long_kb11_settles_under_gravity),
         trial("long_tyrol_gar_slope_medium_settles_under_gravity", long_tyrol_gar_slope_medium_settles_under_gravity),
     ];

@@ -18,8 +18,6 @@ const ROUND_OFF: f64 = 1e-6;
 const ROCK_STRENGTH: f64 = 50e6;
 /// Share of the weight that moves from which the force of a corner counts.
 pub const COUNTS: f64 = 0.02;
-/// Distance over the mesh size within which ends of joints are taken for drawn on a line.
-const DRAWN: f64 = 0.1;
 
 /// A corner of a block that meets a side of another which rises in front of it, with nothing but air between them.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,11 +99,11 @@ pub fn carrying_corners(simulation: &Simulation) -> Vec<CarryingCorner> {
     corner_contacts(simulation).into_iter().map(with_force).filter(carries).collect()
 }
 
-/// Corner contacts of the drawing in a point, or over a length that may be an error of the drawing and that does not
-/// bear the weight of their block.
+/// Corner contacts of the drawing in a point, or over a length that may be an error of the drawing, as that at ends of
+/// joints is, and that does not bear the weight of their block.
 pub fn weak_corners(simulation: &Simulation) -> Vec<CornerContact> {
-    let drawn = DRAWN * simulation.model().covers.mesh.size;
-    let is_weak = |c: &CornerContact| c.length() < drawn && c.capacity() < weight(simulation, c.block);
+    let drawn = simulation.built().end_distances.join;
+    let is_weak = |c: &CornerContact| c.length() <= drawn && c.capacity() < weight(simulation, c.block);
     corner_contacts(simulation).into_iter().filter(is_weak).collect()
 }
 

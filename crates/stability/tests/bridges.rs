@@ -64,7 +64,7 @@ fn near_miss(inside: f64, energies: &str) -> String {
     let [x, y] = start(inside);
     format!(
         "title = \"t\"\n[domain]\noutline = [[-15, -8], [40, -8], [40, 20], [8, 20], [0, 0], [-15, 0]]\n\
-         joint_law = \"joints\"\nbridge_law = \"rock\"\nextend_ends = 0\n[mesh]\nsize = 2.0\n\
+         joint_law = \"joints\"\nbridge_law = \"rock\"\nextend_ends = 0\nnear_ends = 2\n[mesh]\nsize = 2.0\n\
          [[joint]]\npoints = [[{x:?}, {y:?}], [16.0, 11.49801]]\nlaw = \"fault\"\n\
          [[joint]]\npoints = [[16.0, 11.49801], [16.0, 20.0]]\nlaw = \"fault\"\n\
          [[joint_set]]\ndip_deg = 15\ndips = \"right\"\nspacing = 4.0\nseed = 1\n\

@@ -13,6 +13,7 @@ mod hoek_brown_slope;
 mod issue_a_fault_a_millimetre_short_held_a_slope;
 mod issue_nudged_columns_leant_to_a_lower_factor;
 mod issue_rock_without_tension_never_rested;
+mod issue_the_mesh_decided_about_an_end;
 mod kinematics;
 mod limit_analysis;
 mod slips_before_it_holds;

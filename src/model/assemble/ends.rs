@@ -10,12 +10,18 @@ use super::law_of;
 
 /// Ends that one message names.
 const NAMED: usize = 5;
-/// Default of `domain.extend_ends` over the mesh size.
-const JOIN_RATIO: f64 = 0.1;
+/// Default of `domain.extend_ends` over the diagonal of the box of the rock: 0.7 mm of a section that fills a sheet A4
+/// (diagonal 364 mm). Maps show well-defined points to 1/30 inch, 0.85 mm (United States National Map Accuracy
+/// Standards, 1947).
+const JOIN_RATIO: f64 = 2e-3;
+/// Default of `domain.near_ends` over the default of `domain.extend_ends`.
+const NEAR_RATIO: f64 = 10.0;
 
 /// An end of a joint in the rock, near the outline or another joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceEnd {
+    /// Its trace.
+    pub trace: usize,
     /// The joint: `joint[3]`, `joint_set[0]`.
     pub name: String,
     /// Where it was drawn to end (m).
@@ -30,6 +36,14 @@ pub struct TraceEnd {
     pub change: EndChange,
 }
 
+/// The distances of a case for ends, where the box of its rock has a diagonal (m): of the drawing alone, so that they
+/// are the same for every mesh.
+pub(super) fn distances(case: &Case, diagonal: f64, tolerance: f64) -> EndDistances {
+    let usual = JOIN_RATIO * diagonal;
+    let join = case.domain.extend_ends.unwrap_or(usual);
+    EndDistances { tolerance, join, list: case.domain.near_ends.unwrap_or(NEAR_RATIO * usual).max(join) }
+}
+
 /// Joins the ends of joints that almost meet a line to it; the list has those with others near a line, but for the ends
 /// of sets whose traces are meant to end in the rock.
 ///
@@ -39,13 +53,11 @@ pub(super) fn join(
     case: &Case,
     joints: &mut Joints,
     outlines: &[[Point; 2]],
-    tolerance: f64,
+    distances: &EndDistances,
     is_rock: impl Fn(Point) -> bool,
 ) -> Result<Vec<TraceEnd>, GeometryError> {
-    let join = case.domain.extend_ends.unwrap_or(JOIN_RATIO * case.mesh.size);
-    let distances = EndDistances { tolerance, join, list: join.max(case.mesh.size) };
     let mut lines: Vec<&mut Vec<Point>> = joints.traces.iter_mut().map(|(points, _)| points).collect();
-    let mut ends = join_ends(outlines, &mut lines, &distances, is_rock)?;
+    let mut ends = join_ends(outlines, &mut lines, distances, is_rock)?;
     let is_listed = |end: &&NearEnd| end.change != EndChange::Kept || !ends_on_purpose(case, joints, end.trace);
     ends.retain(|end| is_listed(&end));
     if let Some(law) = case.domain.bridge_law.as_ref().and_then(|name| law_of(case, name)) {
@@ -57,6 +69,7 @@ pub(super) fn join(
 /// An end with the names of its trace and of its line.
 pub(super) fn named(end: &NearEnd, name: impl Fn(TraceId) -> String) -> TraceEnd {
     TraceEnd {
+        trace: end.trace.index(),
         name: name(end.trace),
         place: end.place,
         gap: end.gap,
@@ -106,11 +119,11 @@ pub(super) fn name_in(set_start: &[usize], bridges: &[usize], trace: TraceId) ->
 }
 
 /// The ends that were joined to a line, and those that rock holds, in a line of text each.
-pub(super) fn notes(ends: &[TraceEnd]) -> impl Iterator<Item = String> {
-    joined(ends).into_iter().chain(bridged(ends)).chain(kept(ends))
+pub(super) fn notes(ends: &[TraceEnd], distances: &EndDistances) -> impl Iterator<Item = String> {
+    joined(ends, distances.join).into_iter().chain(bridged(ends)).chain(kept(ends, distances.join))
 }
 
-fn joined(ends: &[TraceEnd]) -> Option<String> {
+fn joined(ends: &[TraceEnd], within: f64) -> Option<String> {
     let is_joined = |end: &&TraceEnd| matches!(end.change, EndChange::Extended | EndChange::Trimmed);
     let joined: Vec<&TraceEnd> = ends.iter().filter(is_joined).collect();
     let tell = |end: &&TraceEnd| {
@@ -125,9 +138,10 @@ fn joined(ends: &[TraceEnd]) -> Option<String> {
     };
     (!joined.is_empty()).then(|| {
         format!(
-            "{} {ends} joined to it: {}; domain.extend_ends = 0 keeps what is drawn",
+            "{} {ends} joined to it: {}; they lie within domain.extend_ends = {} m, and 0 keeps what is drawn",
             joined.len(),
-            list(&joined, tell)
+            list(&joined, tell),
+            metres(within)
         )
     })
 }
@@ -149,7 +163,7 @@ fn bridged(ends: &[TraceEnd]) -> Option<String> {
     })
 }
 
-fn kept(ends: &[TraceEnd]) -> Option<String> {
+fn kept(ends: &[TraceEnd], within: f64) -> Option<String> {
     let kept: Vec<&TraceEnd> = ends.iter().filter(|end| end.change == EndChange::Kept).collect();
     let tell = |end: &&TraceEnd| {
         let TraceEnd { name, place, gap, line, .. } = end;
@@ -160,10 +174,17 @@ fn kept(ends: &[TraceEnd]) -> Option<String> {
     (!kept.is_empty()).then(|| {
         format!(
             "{}: intact rock holds {it}, and the model cannot break it; draw joints that are to part the rock up to \
-             the line, raise domain.extend_ends, or give domain.bridge_law for rock that can break there",
-            list(&kept, tell)
+             the line, raise domain.extend_ends, here {} m, or give domain.bridge_law for rock that can break there",
+            list(&kept, tell),
+            metres(within)
         )
     })
+}
+
+/// A distance (m) to three digits.
+fn metres(distance: f64) -> String {
+    let decimals = if distance > 0.0 { (2.0 - libm::log10(distance).floor()).clamp(0.0, 9.0) } else { 0.0 };
+    format!("{distance:.*}", decimals as usize)
 }
 
 fn list(ends: &[&TraceEnd], tell: impl Fn(&&TraceEnd) -> String) -> String {

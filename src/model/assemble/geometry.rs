@@ -1,6 +1,7 @@
 //! Outline, joints, joint sets and mesh edges in one arrangement.
 
 use crate::cover::{self, Crumb, CrumbRule, RegularMesh};
+use crate::geometry::ends::EndDistances;
 use crate::geometry::loops::{validate_holes, validate_loop};
 use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon};
 use crate::model::case::{Case, Invalid};
@@ -17,6 +18,8 @@ pub(super) struct Plane {
     pub joints: Joints,
     /// Ends of joints near a line.
     pub ends: Vec<TraceEnd>,
+    /// Distances within which they were joined and listed.
+    pub distances: EndDistances,
     /// Blocks below the least area.
     pub crumbs: Vec<Crumb>,
 }
@@ -39,7 +42,8 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let is_rock = |position| loops.hold(position);
     demand.check_dense(&joints.traces, tolerance, is_rock)?;
     demand.check_crossings(&joints.traces, tolerance, is_rock)?;
-    let ends = ends::join(case, &mut joints, &loops.sides(), tolerance, is_rock);
+    let distances = ends::distances(case, (high - low).norm(), tolerance);
+    let ends = ends::join(case, &mut joints, &loops.sides(), &distances, is_rock);
     let ends = ends.map_err(|error| demand.explain(&error))?;
     let user_traces = joints.traces.len();
     let angle = case.mesh.angle_deg.to_radians();
@@ -61,7 +65,7 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let report = &mut arrangement.report;
     report.traces.truncate(user_traces);
     report.overlapping_traces.retain(|pair| pair.iter().all(|&t| t.index() < user_traces));
-    Ok(Plane { mesh, arrangement, joints, ends, crumbs })
+    Ok(Plane { mesh, arrangement, joints, ends, distances, crumbs })
 }
 
 fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {

@@ -22,6 +22,7 @@ use crate::contact::{
     Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
+use crate::geometry::ends::EndDistances;
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
@@ -58,6 +59,8 @@ pub struct Built {
     pub set_start: Vec<usize>,
     /// Ends of joints near the outline or another joint: those joined to it, and those that rock holds.
     pub ends: Vec<TraceEnd>,
+    /// Distances within which they were joined and listed.
+    pub end_distances: EndDistances,
     /// Rock bridges that can break, and whether each breaks as a whole.
     pub bridges: Vec<Bridge>,
     /// Blocks below the least area.
@@ -77,10 +80,11 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     enmm_lanes::requested().map_err(|message| Invalid { key: enmm_lanes::VARIABLE.to_owned(), message })?;
     case.validate()?;
     integrators.refusal(case).map_or(Ok(()), Err)?;
-    let geometry::Plane { mesh, mut arrangement, joints, ends, crumbs } = geometry::arrange_case(case, tell)?;
+    let geometry::Plane { mesh, mut arrangement, joints, ends, distances, crumbs } =
+        geometry::arrange_case(case, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
-    let mut notes = [case.reader_notes.clone(), warnings::notes(&noding, &ends, &crumbs)].concat();
+    let mut notes = [case.reader_notes.clone(), warnings::notes(&noding, (&ends, &distances), &crumbs)].concat();
     notes.extend(bonds::note(&joints));
     tell(BuildStage::Covers);
     let (covers, outlines) = cover::cut(mesh, arrangement);
@@ -114,6 +118,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
         traces: joints.traces,
         set_start: joints.set_start,
         ends,
+        end_distances: distances,
         bridges,
         crumbs,
         notes,

@@ -194,7 +194,7 @@ fn faces(model: &Model, trace: TraceId, line: &[Point]) -> [Vec<Piece>; 2] {
         let middle = ends[0] + (ends[1] - ends[0]) * 0.5;
         let mut start = 0.0;
         let mut nearest = (f64::INFINITY, 0.0, Vector::zeros(), line[0]);
-        for leg in line.windows(2) {
+        for leg in line.windows(2).filter(|leg| leg[0] != leg[1]) {
             let distance = segment::distance(middle, leg[0], leg[1]);
             let way = leg[1] - leg[0];
             if distance < nearest.0 {

@@ -2,6 +2,7 @@
 
 use crate::contact::LawId;
 use crate::cover::Crumb;
+use crate::geometry::ends::EndDistances;
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
 use crate::state::Model;
@@ -22,13 +23,17 @@ const TENSION_SHARE: f64 = 0.01;
 const NAMED: usize = 5;
 
 /// What the build has changed in the drawing so that ends and corners meet and no block is a crumb.
-pub(super) fn notes(noding: &NodingReport, ends: &[TraceEnd], crumbs: &[Crumb]) -> Vec<String> {
+pub(super) fn notes(
+    noding: &NodingReport,
+    (ends, distances): (&[TraceEnd], &EndDistances),
+    crumbs: &[Crumb],
+) -> Vec<String> {
     let count = noding.merged_vertices;
     let merged = (count > 0).then(|| {
         let what = if count == 1 { "trace end or vertex was" } else { "trace ends or vertices were" };
         format!("{count} {what} merged within the snap tolerance {:.3e} m", noding.tolerance)
     });
-    merged.into_iter().chain(ends::notes(ends)).chain(note_of_crumbs(crumbs)).collect()
+    merged.into_iter().chain(ends::notes(ends, distances)).chain(note_of_crumbs(crumbs)).collect()
 }
 
 fn note_of_crumbs(crumbs: &[Crumb]) -> Option<String> {

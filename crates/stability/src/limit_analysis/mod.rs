@@ -7,6 +7,7 @@ mod corner;
 mod estimate;
 mod interfaces;
 mod model;
+mod near_ends;
 mod opened;
 mod program;
 mod refusal;
@@ -25,6 +26,8 @@ use enmm::model::Simulation;
 use enmm::model::assemble::outlines;
 use enmm::model::case::{Case, Invalid};
 use model::{Body, Strengths};
+pub use near_ends::NearEnds;
+use near_ends::near_ends;
 use program::{Program, Unsolved};
 pub use refusal::{staged, staged_rock};
 use search::{Limit, Search};
@@ -178,6 +181,8 @@ pub struct Bound {
     /// Estimate, and no bound, of the factor of joints that dilate as the case says, those that open bare; none where
     /// forces do not agree with the friction that they give.
     pub estimate: Option<Collapse>,
+    /// Ends of joints that miss a line and decide about the slope; none where they do not, or where it was not asked.
+    pub ends: Option<NearEnds>,
     /// Blocks that are there, and those that can move.
     pub blocks: [usize; 2],
     /// Straight interfaces.
@@ -202,6 +207,14 @@ pub enum BoundError {
     /// The case cannot be built, or holds what limit analysis cannot treat.
     #[error("{}: {}", .0.key, .0.message)]
     Case(Invalid),
+    /// Every block is held, and none can fail; perhaps ends of joints that miss a line hold them.
+    #[error("{}: {}", .invalid.key, .invalid.message)]
+    Held {
+        /// What is wrong.
+        invalid: Invalid,
+        /// Ends that hold the slope.
+        ends: Option<Box<NearEnds>>,
+    },
     /// A linear program has a solution, but the solver did not reach it.
     #[error(
         "the linear program of {blocks} blocks was not solved ({status}): remove slivers of rock, or snap points that \
@@ -365,7 +378,11 @@ pub fn bounds(case: &Case) -> Result<Bound, BoundError> {
 fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
     let (simulation, warnings) = refusal::staged(case)?;
     let outlines = outlines(simulation.case())?;
-    let Blocks { program, corners, interfaces, points } = Blocks::new(&simulation, &outlines)?;
+    let count = simulation.model().covers.block_count();
+    let ends = |known| if beside { near_ends(case, simulation.built(), count, known) } else { Ok(None) };
+    let blocks = Blocks::new(&simulation, &outlines);
+    let blocks = blocks.map_err(|invalid| held(invalid, ends(Factor::AtLeast(RANGE[1]))))?;
+    let Blocks { program, corners, interfaces, points } = blocks;
     let free = program.bodies.iter().filter(|body| body.is_free()).count();
     let mut search = Search { program: &program, programs: 0 };
     let unsolved = |error: Unsolved| BoundError::Unsolved { blocks: free, status: format!("{:?}", error.status) };
@@ -393,6 +410,7 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         released: free_corners.map(|free| ReleasedCorners { collapse: collapse(&free.limit), corners: free.corners }),
         bare: opened.map(|o| Bare { collapse: collapse(&o.limit), share: o.share, interfaces: o.contacts }),
         estimate: estimated.as_ref().map(collapse),
+        ends: None,
         blocks: [program.bodies.iter().filter(|body| !body.is_gone).count(), free],
         interfaces,
         points,
@@ -404,7 +422,21 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
     };
     bound.warnings.extend(bound.corners_warning());
     bound.warnings.extend(bound.warning());
+    match ends(bound.level_tops.factor) {
+        Ok(found) => bound.ends = found,
+        Err(why) => bound.warnings.push(format!("there is no bound with the ends near lines joined: {why}")),
+    }
+    bound.warnings.extend(bound.ends.as_ref().map(NearEnds::warning));
     Ok(bound)
+}
+
+/// That every block is held, with the ends that hold them.
+fn held(mut invalid: Invalid, ends: Result<Option<NearEnds>, String>) -> BoundError {
+    let ends = ends.ok().flatten().map(Box::new);
+    if let Some(ends) = &ends {
+        invalid.message = format!("{}; {}", invalid.message, ends.warning());
+    }
+    BoundError::Held { invalid, ends }
 }
 
 /// The blocks of a model and where they can press on each other.

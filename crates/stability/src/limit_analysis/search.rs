@@ -158,10 +158,18 @@ impl Search<'_> {
         Ok(Choice { limit: best, least })
     }
 
+    /// Whether there is equilibrium at a strength.
+    ///
+    /// # Errors
+    /// A program that is not solved.
+    pub fn holds(&mut self, strength: f64, more: &[Contact]) -> Result<bool, Unsolved> {
+        Ok(self.solve(strength, more)?.unbalanced <= BALANCED)
+    }
+
     /// Whether a choice can still give less than the best: it has no equilibrium at the best one's strength.
     fn is_worth(&mut self, more: &[Contact], best: &Limit) -> Result<bool, Unsolved> {
         let Some(low) = best.low else { return Ok(true) };
-        Ok(self.solve(low * (1.0 + SAME), more)?.unbalanced > BALANCED)
+        Ok(!self.holds(low * (1.0 + SAME), more)?)
     }
 
     /// Chooses for every corner that is entered the facet that it enters less, until none is.

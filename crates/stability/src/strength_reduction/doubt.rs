@@ -2,8 +2,8 @@
 
 use super::corners::CornersHold;
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
-use crate::limit_analysis::Bound;
 use crate::limit_analysis::continuum::Bracket;
+use crate::limit_analysis::{Bound, NearEnds};
 use enmm::model::case::{Case, Rock};
 
 /// Part of the largest term of the ledger that may stay unexplained.
@@ -112,6 +112,7 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     doubts.extend(not_monotone(trials));
     doubts.extend(slid(trials, |t| t.verdict == Verdict::Caught, "were caught: that does not count as stable"));
     doubts.extend(reduction.corners.as_ref().map(CornersHold::doubt));
+    doubts.extend(reduction.ends.as_ref().map(NearEnds::warning));
     doubts.extend(far(trials));
     doubts.extend(reduction.doubt());
     doubts.extend(undecided(trials));

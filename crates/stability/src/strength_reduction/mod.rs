@@ -21,7 +21,7 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::StepError;
 
 use super::limit_analysis::continuum::{self, Bracket};
-use super::limit_analysis::{self, Bound, BoundError};
+use super::limit_analysis::{self, Bound, BoundError, NearEnds};
 use enmm::model::case::{Case, Invalid};
 use enmm::model::{ExplicitAlone, Integrators, Mechanism, Simulation};
 
@@ -203,6 +203,8 @@ pub struct Reduction {
     pub bound: Result<Bound, String>,
     /// That of a model whose rock yields, in place of the bound.
     pub bracket: Option<Bracket>,
+    /// Ends of joints that miss a line and decide about the bound.
+    pub ends: Option<NearEnds>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
@@ -306,7 +308,7 @@ pub fn factor_of_safety(
     let (series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
     let mechanism = toppling::mechanism(&base, &series);
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
-    let (bound, bracket) = second_opinion(case, &series.end);
+    let SecondOpinion { bound, bracket, ends } = SecondOpinion::of(case, &series.end);
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
     let free_area = base.free_area();
     let mut reduction = Reduction {
@@ -322,6 +324,7 @@ pub fn factor_of_safety(
         free_area,
         bound,
         bracket,
+        ends,
         warnings: rest.warnings,
         simulation: failed.unwrap_or(base.simulation),
     };
@@ -330,17 +333,34 @@ pub fn factor_of_safety(
     Ok(reduction)
 }
 
-/// Limit analysis beside a search: of rigid blocks, or of rock that yields.
-fn second_opinion(case: &Case, end: &End) -> (Result<Bound, String>, Option<Bracket>) {
-    if *end == End::Interrupted {
-        return (Err("interrupted".to_owned()), None);
-    }
-    if !case.yields() {
-        return (limit_analysis::bound(case).map_err(|error| error.to_string()), None);
-    }
-    match close_bracket(case) {
-        Ok(bracket) => (Err("rock yields, and blocks are not rigid".to_owned()), Some(bracket)),
-        Err(error) => (Err(error.to_string()), None),
+/// Limit analysis beside a search: of rigid blocks with the ends that decide about their bound, or of rock that yields.
+struct SecondOpinion {
+    bound: Result<Bound, String>,
+    bracket: Option<Bracket>,
+    ends: Option<NearEnds>,
+}
+
+impl SecondOpinion {
+    fn of(case: &Case, end: &End) -> Self {
+        let none = |why: String| Self { bound: Err(why), bracket: None, ends: None };
+        if *end == End::Interrupted {
+            return none("interrupted".to_owned());
+        }
+        if case.yields() {
+            return match close_bracket(case) {
+                Ok(bracket) => {
+                    Self { bracket: Some(bracket), ..none("rock yields, and blocks are not rigid".to_owned()) }
+                }
+                Err(error) => none(error.to_string()),
+            };
+        }
+        match limit_analysis::bound(case) {
+            Ok(bound) => Self { ends: bound.ends.clone(), bound: Ok(bound), bracket: None },
+            Err(BoundError::Held { invalid, ends }) => {
+                Self { ends: ends.map(|ends| *ends), ..none(format!("{}: {}", invalid.key, invalid.message)) }
+            }
+            Err(error) => none(error.to_string()),
+        }
     }
 }
 

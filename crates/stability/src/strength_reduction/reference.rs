@@ -76,8 +76,8 @@ fn refuse_locked(simulation: &Simulation) -> Result<(), Invalid> {
     let message = format!(
         "is {size} m, so that fewer than two elements of rock that yields lie between the end of a joint and \
          another one, which cannot shear through and hold too much: {}{more}; give a `[[bridge]]` between these \
-         points whose law has the strength of the rock (or `domain.bridge_law` for all that are shorter than an \
-         element, `bridge_law` of a joint set for its gaps), or a mesh of {:.6} m or finer",
+         points whose law has the strength of the rock (or `domain.bridge_law` for all that are shorter than \
+         `domain.near_ends`, `bridge_law` of a joint set for its gaps), or a mesh of {:.6} m or finer",
         named.join(", "),
         0.5 * least
     );

@@ -295,7 +295,13 @@ impl Demand<'_> {
         if matches!(error, GeometryError::TooManyPieces { .. }) {
             return self.refuse(&error.to_string());
         }
-        Invalid { key: "domain".into(), message: error.to_string() }
+        // The numbers of the case are finite, so that another one is made here.
+        let fault = if matches!(error, GeometryError::NotFinite { .. }) {
+            ", though all that the case gives is finite: this is a fault of enmm, please report it with the case"
+        } else {
+            ""
+        };
+        Invalid { key: "domain".into(), message: format!("{error}{fault}") }
     }
 
     /// Refuses traces that lie too close to each other in the rock, before they are cut.
