@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm::model::Simulation;
+use enmm_io::LoadedCase;
 use enmm_run::check::{BridgeRecord, Check};
 use enmm_run::rock_mass::RockMass;
 use enmm_run::{Folder, Observer};
@@ -12,6 +13,7 @@ use enmm_run::{Folder, Observer};
 use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::run::check_folder;
+use crate::told::Told;
 use crate::{BAD_INPUT, FAILED, fail, print_line};
 
 /// Arguments of `enmm check`.
@@ -46,7 +48,10 @@ pub fn check(arguments: &Arguments) -> ExitCode {
     };
     let (simulation, _held, found) = match looked {
         Ok(looked) => looked,
-        Err(message) => return refuse(&message, BAD_INPUT),
+        Err((loaded, message)) => {
+            let told = loaded.map_or_else(Told::default, |loaded| Told::of(&loaded));
+            return told.refuse(&message, json, BAD_INPUT);
+        }
     };
     if let Some(Err(error)) = directory.map(|directory| enmm_run::draw_checked(&simulation, directory)) {
         return refuse(&format!("cannot draw the model ({error}): choose another directory with -o"), FAILED);
@@ -60,12 +65,23 @@ pub fn check(arguments: &Arguments) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The model of a case, the folder for its picture, and the report.
-fn look(arguments: &Arguments, screen: &mut Screen) -> Result<(Simulation, Option<Folder>, Check), String> {
-    let loaded = arguments.case.load().map_err(|error| error.to_string())?;
+/// The model of a case, the folder for its picture, and the report; or the error, with the case if it could be read.
+fn look(
+    arguments: &Arguments,
+    screen: &mut Screen,
+) -> Result<(Simulation, Option<Folder>, Check), (Option<LoadedCase>, String)> {
+    let loaded = arguments.case.load().map_err(|error| (None, error.to_string()))?;
+    build(arguments, &loaded, screen).map_err(|error| (Some(loaded), error))
+}
+
+fn build(
+    arguments: &Arguments,
+    loaded: &LoadedCase,
+    screen: &mut Screen,
+) -> Result<(Simulation, Option<Folder>, Check), String> {
     let directory = arguments.output.as_deref();
     if let Some(directory) = directory {
-        check_folder(directory, &loaded, arguments.force).map_err(|error| error.to_string())?;
+        check_folder(directory, loaded, arguments.force).map_err(|error| error.to_string())?;
     }
     let held = directory.map(|directory| Folder::open(directory, loaded.source.inputs())).transpose();
     let held = held.map_err(|error| format!("cannot draw the model ({error}): choose another directory with -o"))?;
@@ -155,10 +171,12 @@ fn table(found: &Check) -> String {
         ("ignored joints", found.ignored_joints.to_string()),
         ("memory (MB)", memory(found)),
     ];
-    let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<22} {value}")).collect();
+    let drawing = found.drawing.iter().map(|drawing| ("drawing", drawing.clone()));
+    let rows = drawing.chain(rows).map(|(name, value)| format!("{name:<22} {value}"));
+    let mut lines: Vec<String> = rows.collect();
     lines.extend(found.rock_masses.iter().map(rock_mass));
     lines.extend(bridges(&found.bridges));
-    lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.join("\n")
 }

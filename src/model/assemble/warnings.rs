@@ -5,7 +5,7 @@ use crate::contact::LawId;
 use crate::cover::Crumb;
 use crate::geometry::{NodingReport, Point, polygon};
 use crate::model::case::key::Key;
-use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
+use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver, plausible};
 use crate::state::Model;
 
 use super::ends::{self, TraceEnd};
@@ -18,8 +18,6 @@ use super::points;
 const YOUNG: [f64; 2] = [1e5, 5e11];
 /// Density of light fills and of ores (kg/m³).
 const DENSITY: [f64; 2] = [500.0, 10_000.0];
-/// Longest side of the box of a slope (m).
-const LONGEST: f64 = 2e4;
 /// Length of a fixed edge over that of the boundary on it.
 const EDGE_RATIO: f64 = 2.0;
 /// Share of the greatest in-situ stress that a tension may have, as at a rough surface.
@@ -91,7 +89,7 @@ fn lost_joints(noding: &NodingReport, case: &Case, Joints { traces, set_start, .
     let is_lost = |range: &[usize]| (range[0]..range[1]).all(|t| ignored.binary_search(&t).is_ok());
     warnings.extend(sets.filter(|(_, range)| is_lost(range)).map(|(k, range)| {
         let count = range[1] - range[0];
-        format!("joint_set[{k}]: none of its {count} traces cuts rock; correct its region, origin or spacing")
+        format!("{}: none of its {count} traces cuts rock; correct its region, origin or spacing", case.joint_set_name(k))
     }));
     warnings
 }
@@ -186,17 +184,12 @@ fn rocks(case: &Case) -> Vec<String> {
     warnings
 }
 
-/// A model that is larger than slopes are, or smaller than its mesh.
+/// A model that is larger or smaller than slopes are, or smaller than its mesh.
 fn extent(case: &Case, model: &Model) -> Option<String> {
     let (low, high) = polygon::bounds(&model.covers.polygons.points);
     let span = high - low;
-    if span.max() > LONGEST {
-        let area: f64 = model.covers.element_area.iter().sum();
-        return Some(format!(
-            "domain.outline: the rock is {:.6} m by {:.6} m, {area:.3e} m²; slopes are up to {LONGEST} m: coordinates \
-             are in metres, so divide those in millimetres by 1000",
-            span.x, span.y
-        ));
+    if let Some(odd) = plausible::odd_size([span.x, span.y]) {
+        return Some(format!("domain.outline: {odd}"));
     }
     let size = case.mesh.size;
     (size > span.max()).then(|| {
