@@ -17,6 +17,8 @@ pub struct Pond {
     pub span: [f64; 2],
     /// What stands there.
     pub part: PondPart,
+    /// Shallower places of the same kind.
+    pub others: usize,
 }
 
 /// The part of a table that stands above the ground.
@@ -39,7 +41,7 @@ impl Pond {
     /// What to tell of it.
     pub fn text(&self) -> String {
         let short = |value: f64| (1e3 * value).round() / 1e3 + 0.0;
-        let Self { key, depth, span: [from, to], part } = self;
+        let Self { key, depth, span: [from, to], part, others } = self;
         let why = match part {
             PondPart::BeyondRock([x, y]) => format!(
                 "the line ends inside the rock at ({}, {}) m and is level beyond; draw it on to where the ground is \
@@ -53,7 +55,8 @@ impl Pond {
             PondPart::Sloping => "the line slopes there, which still water does not; draw it below the face".to_owned(),
         };
         let [depth, from, to] = [*depth, *from, *to].map(short);
-        format!("{key}: stands {depth} m above the ground from x {from} to {to} m: {why}")
+        let more = if *others > 0 { format!(", and in {others} shallower places") } else { String::new() };
+        format!("{key}: stands {depth} m above the ground from x {from} to {to} m{more}: {why}")
     }
 }
 
@@ -121,33 +124,45 @@ impl Ground {
         let right = (level(last[0], f64::INFINITY, last[1]), beyond(last));
         let sloping = table.windows(2).filter(|pair| pair[0][1] != pair[1][1] && pair[0][0] < pair[1][0]);
         let sloping = sloping.map(|pair| ([pair[0], pair[1]], PondPart::Sloping));
-        let mut found: Vec<Pond> = Vec::new();
+        let mut all: Vec<Pond> = Vec::new();
         for (line, part) in std::iter::once(left).chain(sloping).chain([right]) {
-            let Some((depth, span)) = self.flooded(&line) else { continue };
-            match found.last_mut().filter(|pond| pond.part == part) {
-                Some(pond) => (pond.depth, pond.span[1]) = (pond.depth.max(depth), span[1]),
-                None => found.push(Pond { key: key.to_owned(), depth, span, part }),
+            for (depth, span) in self.flooded(&line) {
+                match all.last_mut().filter(|pond| pond.part == part && pond.span[1] == span[0]) {
+                    Some(pond) => (pond.depth, pond.span[1]) = (pond.depth.max(depth), span[1]),
+                    None => all.push(Pond { key: key.to_owned(), depth, span, part, others: 0 }),
+                }
             }
         }
-        found.retain(|pond| pond.depth > SHALLOW * self.height);
+        all.retain(|pond| pond.depth > SHALLOW * self.height);
+        let mut found: Vec<Pond> = Vec::new();
+        for pond in all {
+            match found.iter_mut().find(|deepest| deepest.part == pond.part) {
+                Some(deepest) => {
+                    let others = deepest.others + 1;
+                    if pond.depth > deepest.depth {
+                        *deepest = pond;
+                    }
+                    deepest.others = others;
+                }
+                None => found.push(pond),
+            }
+        }
         found
     }
 
-    /// Greatest depth (m) of the ground below a straight line, with the span of x where the line is above it.
-    fn flooded(&self, line: &Straight) -> Option<(f64, [f64; 2])> {
-        let mut all: Option<(f64, [f64; 2])> = None;
-        for piece in &self.pieces {
+    /// Where a straight line is above the ground: greatest depth (m) of each piece, with the span of its x.
+    fn flooded(&self, line: &Straight) -> Vec<(f64, [f64; 2])> {
+        let wet = |piece: &Straight| {
             let [from, to] = [piece[0][0].max(line[0][0]), piece[1][0].min(line[1][0])];
             let depth = [from, to].map(|x| water_on(line, x) - height_on(piece, x));
             if from >= to || depth.iter().all(|depth| *depth <= 0.0) {
-                continue;
+                return None;
             }
             let crossing = from + (to - from) * depth[0] / (depth[0] - depth[1]);
-            let wet = [if depth[0] > 0.0 { from } else { crossing }, if depth[1] > 0.0 { to } else { crossing }];
-            let deepest = depth[0].max(depth[1]);
-            all = Some(all.map_or((deepest, wet), |(most, span)| (most.max(deepest), [span[0], wet[1]])));
-        }
-        all
+            let span = [if depth[0] > 0.0 { from } else { crossing }, if depth[1] > 0.0 { to } else { crossing }];
+            Some((depth[0].max(depth[1]), span))
+        };
+        self.pieces.iter().filter_map(wet).collect()
     }
 
     /// The higher of both grounds at `x` (m); none beside the rock.

@@ -268,7 +268,7 @@ fn bolts(reduction: &Reduction) -> Option<String> {
         *greatest = if bolt.force > greatest.force { bolt } else { *greatest };
     }
     let of = |bolt: &&BoltRecord| {
-        let name = bolt.name.clone().unwrap_or_else(|| format!("bolt {}", bolt.bolt));
+        let name = bolt.name.clone().unwrap_or_else(|| format!("bolt[{}]", bolt.bolt));
         let share = bolt.utilisation.map_or_else(String::new, |share| format!(", {:.0} % of yield", 100.0 * share));
         let how = bolt.support.map_or("as the rock stretches it", |support| match support {
             Support::Active => "active, at its pretension",

@@ -30,5 +30,8 @@ pub fn survey_geometry(path: &Path, tolerance: f64) -> Result<Survey, CaseError>
     let unreadable = |message| CaseError::Unreadable { file: file.clone(), message };
     let format = geometry_file::Format::of(path).map_err(unreadable)?;
     let text = geometry_file::text(format, path).map_err(unreadable)?;
-    geometry_file::survey::survey(format, &file, &text, tolerance)
+    match format {
+        geometry_file::Format::Dxf => geometry_file::dxf::survey(&file, &text, tolerance),
+        _ => geometry_file::survey::survey(format, &file, &text),
+    }
 }

@@ -89,7 +89,10 @@ fn lost_joints(noding: &NodingReport, case: &Case, Joints { traces, set_start, .
     let is_lost = |range: &[usize]| (range[0]..range[1]).all(|t| ignored.binary_search(&t).is_ok());
     warnings.extend(sets.filter(|(_, range)| is_lost(range)).map(|(k, range)| {
         let count = range[1] - range[0];
-        format!("{}: none of its {count} traces cuts rock; correct its region, origin or spacing", case.joint_set_name(k))
+        format!(
+            "{}: none of its {count} traces cuts rock; correct its region, origin or spacing",
+            case.joint_set_name(k)
+        )
     }));
     warnings
 }

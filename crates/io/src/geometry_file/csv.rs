@@ -147,7 +147,10 @@ fn plane(columns: &Columns, rows: &[csv::StringRecord]) -> Plane {
     let Some([_, y, _]) = points.first() else { return Plane::Flat };
     let number = |row: &csv::StringRecord, column: Option<usize>| row.get(column?)?.parse().ok();
     let of_row = |row: &csv::StringRecord| -> Vec<[Option<f64>; 3]> {
-        points.iter().map(|[x, y, z]| [number(row, *x), y.map_or(Some(0.0), |_| number(row, *y)), number(row, *z)]).collect()
+        points
+            .iter()
+            .map(|[x, y, z]| [number(row, *x), y.map_or(Some(0.0), |_| number(row, *y)), number(row, *z)])
+            .collect()
     };
     match y {
         None => Plane::AlongX,
@@ -158,9 +161,11 @@ fn plane(columns: &Columns, rows: &[csv::StringRecord]) -> Plane {
 /// A warning of columns that are not read.
 fn unused(heads: &[Head], table: &Table) -> Option<String> {
     let of_points = |k: &usize| {
-        table.columns.points().iter().any(|[x, y, z]| {
-            [*x, *y].contains(&Some(*k)) || (table.plane != Plane::Flat && *z == Some(*k))
-        })
+        table
+            .columns
+            .points()
+            .iter()
+            .any(|[x, y, z]| [*x, *y].contains(&Some(*k)) || (table.plane != Plane::Flat && *z == Some(*k)))
     };
     let used = |k: &usize| match &table.columns {
         Columns::Wkt(column) => column == k,

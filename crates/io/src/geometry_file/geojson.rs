@@ -117,15 +117,13 @@ impl Reader<'_> {
         match type_of(value) {
             "FeatureCollection" => self.list(key, value, "features", said),
             "GeometryCollection" => self.list(key, value, "geometries", said),
-            "Feature" => {
-                match value.get("geometry") {
-                    None | Some(Value::Null) => self.skip("Feature without geometry"),
-                    Some(geometry) => {
-                        let said = self.said(key, value)?;
-                        self.object(&key.field("geometry"), geometry, &said)
-                    }
+            "Feature" => match value.get("geometry") {
+                None | Some(Value::Null) => self.skip("Feature without geometry"),
+                Some(geometry) => {
+                    let said = self.said(key, value)?;
+                    self.object(&key.field("geometry"), geometry, &said)
                 }
-            }
+            },
             kind @ ("Point" | "MultiPoint") => self.skip(kind),
             kind if SHAPES.contains(&kind) => self.shape(key, value, kind, said),
             _ => {

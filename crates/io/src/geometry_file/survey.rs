@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::names::Laws;
 use super::unit::Unit;
-use super::{Affine, Format, Geometry, Located, dxf, read};
+use super::{Affine, Format, Geometry, Located, read};
 use crate::case_error::CaseError;
 use enmm::model::case::PointList;
 
@@ -36,15 +36,11 @@ pub struct LayerSurvey {
     pub problems: BTreeMap<String, String>,
 }
 
-/// Looks at a file; curves are within `tolerance` (m).
+/// Looks at a file that is no drawing.
 ///
 /// # Errors
-/// The file is none of its format, or a block of a drawing cannot be placed; an entity of a drawing that cannot be read
-/// is a problem of its layer.
-pub fn survey(format: Format, file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseError> {
-    if format == Format::Dxf {
-        return dxf::survey(file, text, tolerance);
-    }
+/// The file is none of its format.
+pub fn survey(format: Format, file: &str, text: &str) -> Result<Survey, CaseError> {
     let mut geometry = read(format, file, text, &Laws::Any)?;
     let unit = Unit::of(geometry.declared.as_ref(), None, file)?;
     geometry.map(&Affine::of_case(None, unit.metres));
@@ -64,11 +60,8 @@ fn layers(geometry: Geometry) -> Vec<LayerSurvey> {
         ..LayerSurvey::default()
     };
     let points = |located: Vec<Located>| -> Vec<PointList> { located.into_iter().map(|(points, _)| points).collect() };
-    let loops = [
-        ("outline", points(outline.into_iter().collect())),
-        ("hole", points(holes)),
-        ("island", points(islands)),
-    ];
+    let loops =
+        [("outline", points(outline.into_iter().collect())), ("hole", points(holes)), ("island", points(islands))];
     let loops = loops.into_iter().filter(|(_, loops)| !loops.is_empty()).map(|(name, loops)| rings(name, loops));
     let mut joints: BTreeMap<String, LayerSurvey> = BTreeMap::new();
     for trace in traces {

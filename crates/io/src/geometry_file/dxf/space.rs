@@ -58,9 +58,8 @@ fn place(pairs: &[Group], codes: [i32; 3]) -> Place {
 fn out_of_plane(record: &Record, points: impl Iterator<Item = Place>) -> Vec<Place> {
     let direction = normal(|code| record.find(code).map(|group| group.value.parse::<f64>()).transpose());
     let Ok(n) = direction else { return vec![[None; 3]] };
-    let cross = |a: [f64; 3], b: [f64; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let unit = |a: [f64; 3]| {
         let length = a.iter().map(|value| value * value).sum::<f64>().sqrt();
         a.map(|value| value / length)
