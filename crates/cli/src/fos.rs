@@ -237,7 +237,13 @@ fn result(reduction: &Reduction, found: &Found, before: Option<&String>) -> Stri
         tell("failing blocks", listed(trial.failing.iter().map(name)));
     }
     let warnings = reduction.warnings.iter().filter(|&warning| before != Some(warning));
-    lines.extend(told::lines(warnings, reduction.simulation.built().notes.len()));
+    let notes = &reduction.simulation.built().notes;
+    if matches!(reduction.end, End::StableThroughout) {
+        // They say why nothing fails.
+        lines.extend(told::lines(warnings, 0).into_iter().chain(notes.iter().map(|note| format!("note: {note}"))));
+    } else {
+        lines.extend(told::lines(warnings, notes.len()));
+    }
     lines.join("\n") + "\n"
 }
 

@@ -12,7 +12,8 @@ fn points(loaded: &LoadedCase) -> &[[f64; 2]] {
 }
 
 fn unit(loaded: &LoadedCase) -> String {
-    loaded.case.drawing_unit.as_ref().expect("a unit").rsplit('/').next().expect("a name").to_owned()
+    let told = loaded.case.drawing_unit.as_ref().expect("a unit");
+    told[told.find("g.geojson").expect("the file")..].to_owned()
 }
 
 /// A line in a coordinate reference system.
@@ -119,7 +120,7 @@ fn upright_sections_lay_on_one_line() {
     // Heights of points that are no section are not used.
     let loaded = with_geometry_and("g.csv", "trace,x,y,z\n1,1,0,4\n1,8,7,5\n", OUTLINE).unwrap();
     assert_eq!((points(&loaded), loaded.warnings.len()), (&[[1.0, 0.0], [8.0, 7.0]][..], 1));
-    let mixed = with_geometry_and("g.dxf", &dxf(&(line.to_owned() + &arc.replace("220\n-1", "220\n-0.5"))), OUTLINE);
+    let mixed = with_geometry_and("g.dxf", &dxf(&(line.to_owned() + &arc.replace("230\n0\n", "230\n1\n"))), OUTLINE);
     assert!(mixed.is_err(), "an arc off the plane of a section was read");
 }
 
