@@ -163,7 +163,7 @@ impl Reader<'_> {
                 (Some(Purpose::Law), _) if said.law.is_some() => {
                     return self.document.fail(&key, "is a second name of the joint law; remove one of both");
                 }
-                (Some(Purpose::Law), Value::String(law)) if law.trim().is_empty() => {}
+                (Some(_), Value::String(name)) if name.trim().is_empty() => {}
                 (Some(Purpose::Law), Value::String(law)) => said.law = Some((law.clone(), key.to_string())),
                 (Some(Purpose::Law), other) => {
                     let message = format!("is {}, must be a string; write the name of a joint law", shown(other));
