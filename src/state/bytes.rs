@@ -1,7 +1,7 @@
 //! Bytes of saved states: a payload in a container that says of which case it is and whether it is whole.
 //!
-//! Layout, little-endian: magic `ENMMCKPT`; format version u32; [`Keeper`] u32; engine version and case hash, each as u32
-//! length and text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
+//! Layout, little-endian: magic `ENMMCKPT`; format version u32; [`Keeper`] u32; engine version and case hash, each as
+//! u32 length and text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
 
 use std::cmp::Ordering;
 

@@ -1,5 +1,5 @@
-//! Uses of the layers of a drawing, by their names and by the lines on them; other files say themselves what their lines
-//! are.
+//! Uses of the layers of a drawing, by their names and by the lines on them; other files say themselves what their
+//! lines are.
 
 use enmm_io::{LayerSurvey, Survey};
 

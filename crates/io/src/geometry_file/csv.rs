@@ -1,12 +1,14 @@
-//! Traces by rows of a CSV file, whose first line names the columns, in any letter case and perhaps with a unit, `x1 [m]`:
+//! Traces by rows of a CSV file, whose first line names the columns, in any letter case and perhaps with a unit, `x1
+//! [m]`:
 //!
 //! - `wkt` (or `geometry`): each row is one geometry as well-known text, such as QGIS writes;
 //! - `x1`, `y1`, `x2`, `y2`: each row is one straight trace;
 //! - `trace` (or `id`), `x`, `y`: each row is one point; rows of the same trace that follow each other are one line.
 //!
-//! With `z` beside `y` the section may stand upright. A column `law` (or `joint_law`, or `layer`) names the joint law of
-//! each row; `outline`, `hole` and `island` there make a loop instead of a trace. Commas, semicolons or tabs separate
-//! columns, or what a first line `sep=;` says; lines that begin with `#` are comments. Other columns are not used.
+//! With `z` beside `y` the section may stand upright. A column `law` (or `joint_law`, or `layer`) names the joint law
+//! of each row; `outline`, `hole` and `island` there make a loop instead of a trace. Commas, semicolons or tabs
+//! separate columns, or what a first line `sep=;` says; lines that begin with `#` are comments. Other columns are not
+//! used.
 
 use super::names::{Laws, Part, Purpose, tidy};
 use super::unit::{Declared, is_unit};

@@ -1,6 +1,6 @@
-//! Units of coordinate reference systems by their EPSG codes: those that are no metres. From the EPSG Geodetic Parameter
-//! Dataset, version 11.022 (<https://epsg.org>), as PROJ has it: geographic systems, and projected ones by the unit of
-//! their first axis.
+//! Units of coordinate reference systems by their EPSG codes: those that are no metres. From the EPSG Geodetic
+//! Parameter Dataset, version 11.022 (<https://epsg.org>), as PROJ has it: geographic systems, and projected ones by
+//! the unit of their first axis.
 
 /// The unit of a coordinate reference system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
-//! The plain JSON format: `{"outline": [[x, y], …], "holes": […], "islands": […], "joints": [[[x, y], …], …]}`, in metres
-//! or the unit that a key `units` names. Keys may be in any letter case, and `traces` is another name of `joints`. Other
-//! keys are remarks of whoever made the file, unless they hold points.
+//! The plain JSON format: `{"outline": [[x, y], …], "holes": […], "islands": […], "joints": [[[x, y], …], …]}`, in
+//! metres or the unit that a key `units` names. Keys may be in any letter case, and `traces` is another name of
+//! `joints`. Other keys are remarks of whoever made the file, unless they hold points.
 
 use serde_json::Value;
 

@@ -1,6 +1,6 @@
-//! Splines that a drawing gives by points on them alone: the cubic through these with continuous curvature. Its parameter
-//! is the length of the chords, and where no direction is given at an end the curvature is 0 there, as CAD programs draw
-//! such splines.
+//! Splines that a drawing gives by points on them alone: the cubic through these with continuous curvature. Its
+//! parameter is the length of the chords, and where no direction is given at an end the curvature is 0 there, as CAD
+//! programs draw such splines.
 
 use super::curve::{CHORDS_MAX, HALVINGS_MAX, halve};
 use crate::geometry_file::affine::Affine;
