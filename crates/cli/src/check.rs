@@ -14,7 +14,7 @@ use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::run::check_folder;
 use crate::told::Told;
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, print_line};
 
 /// Arguments of `enmm check`.
 #[derive(Args)]
@@ -37,24 +37,20 @@ pub struct Arguments {
 pub fn check(arguments: &Arguments) -> ExitCode {
     let Arguments { ref output, json, .. } = *arguments;
     let directory = output.as_deref();
-    let mut screen = Screen::new(json);
-    let looked = look(arguments, &mut screen);
-    screen.close();
-    let refuse = |error: &dyn std::fmt::Display, status| {
-        if json {
-            print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
-        }
-        fail(&error, status)
+    let loaded = match arguments.case.load() {
+        Ok(loaded) => loaded,
+        Err(error) => return Told::default().refuse(&error, json, BAD_INPUT),
     };
+    let mut screen = Screen::new(json);
+    let looked = look(arguments, &loaded, &mut screen);
+    screen.close();
     let (simulation, _held, found) = match looked {
         Ok(looked) => looked,
-        Err((loaded, message)) => {
-            let told = loaded.map_or_else(Told::default, |loaded| Told::of(&loaded));
-            return told.refuse(&message, json, BAD_INPUT);
-        }
+        Err(message) => return Told::of(&loaded).refuse(&message, json, BAD_INPUT),
     };
     if let Some(Err(error)) = directory.map(|directory| enmm_run::draw_checked(&simulation, directory)) {
-        return refuse(&format!("cannot draw the model ({error}): choose another directory with -o"), FAILED);
+        let message = format!("cannot draw the model ({error}): choose another directory with -o");
+        return Told::default().refuse(&message, json, FAILED);
     }
     if json {
         print_line(&json_line(&found));
@@ -65,16 +61,8 @@ pub fn check(arguments: &Arguments) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The model of a case, the folder for its picture, and the report; or the error, with the case if it could be read.
+/// The model of a case, the folder for its picture, and the report.
 fn look(
-    arguments: &Arguments,
-    screen: &mut Screen,
-) -> Result<(Simulation, Option<Folder>, Check), (Option<LoadedCase>, String)> {
-    let loaded = arguments.case.load().map_err(|error| (None, error.to_string()))?;
-    build(arguments, &loaded, screen).map_err(|error| (Some(loaded), error))
-}
-
-fn build(
     arguments: &Arguments,
     loaded: &LoadedCase,
     screen: &mut Screen,
