@@ -2,7 +2,7 @@
 //! it (theory §7, Bridges by section).
 
 use enmm::model::assemble::Breaking;
-use enmm::model::bytes::{decode, encode};
+use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{Simulation, State};
 
 use crate::common::{run_stage, simulation};
@@ -113,18 +113,18 @@ fn a_state_in_the_middle_of_a_release_goes_on_to_the_same_bits() {
     while release(one.state()).is_none_or(|left| left > 0.5) {
         one.advance(false).unwrap_or_else(|e| panic!("{e}"));
     }
-    let bytes = encode(one.state(), "hash").expect("bytes");
+    let bytes = encode(Keeper::Model, one.state(), "hash").expect("bytes");
     let end = |mut simulation: Simulation| {
         (0..200).for_each(|_| _ = simulation.advance(false).unwrap_or_else(|e| panic!("{e}")));
         let mut state = simulation.state().clone();
         state.counters.searches = 0;
         assert_eq!(release(&state), Some(0.0));
-        encode(&state, "").expect("bytes")
+        encode(Keeper::Model, &state, "").expect("bytes")
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("a pool");
     let other = pool.install(|| {
         let mut other = simulation(&text);
-        other.restore(decode(&bytes, "hash").expect("a state"));
+        other.restore(decode(Keeper::Model, &bytes, "hash").expect("a state"));
         end(other)
     });
     assert!(end(one) == other);

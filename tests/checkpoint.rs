@@ -2,7 +2,7 @@
 //! any number of threads; a checkpoint that is not whole, or not of this case and version, is refused.
 
 use crate::common::simulation;
-use enmm::model::bytes::{BytesError, decode, encode};
+use enmm::model::bytes::{BytesError, Keeper, decode, encode};
 use enmm::model::{Simulation, State};
 use enmm_io::checkpoint::{CheckpointError, load, save};
 
@@ -59,9 +59,9 @@ fn run(threads: usize, stopped: bool) -> State {
             if !stopped {
                 return simulation;
             }
-            let bytes = encode(simulation.state(), "hash").expect("bytes");
+            let bytes = encode(Keeper::Model, simulation.state(), "hash").expect("bytes");
             let mut other = self::simulation(SLOPE);
-            other.restore(decode(&bytes, "hash").expect("a state"));
+            other.restore(decode(Keeper::Model, &bytes, "hash").expect("a state"));
             other
         };
         advance(&mut one, 33);
@@ -82,7 +82,7 @@ fn a_restored_run_is_the_same_to_the_bit_for_any_threads() {
         let mut state = state.clone();
         // A restored model searches again at once: the one thing that it counts and an uninterrupted one does not.
         state.counters.searches = 0;
-        encode(&state, "").expect("bytes")
+        encode(Keeper::Model, &state, "").expect("bytes")
     };
     assert!(!plain.contacts.is_empty() && plain.ledger.friction > 0.0, "the case must have contact and slip");
     for (threads, stopped) in [(1, true), (2, false), (2, true), (5, true)] {
@@ -117,8 +117,8 @@ fn a_file_gives_back_what_was_saved() {
 fn what_is_no_whole_checkpoint_of_this_case_is_refused() {
     let mut one = simulation(SLOPE);
     advance(&mut one, 3);
-    let good = encode(one.state(), "0123").expect("bytes");
-    let refused = |bytes: &[u8], hash: &str| decode::<State>(bytes, hash).expect_err("refused");
+    let good = encode(Keeper::Model, one.state(), "0123").expect("bytes");
+    let refused = |bytes: &[u8], hash: &str| decode::<State>(Keeper::Model, bytes, hash).expect_err("refused");
     for length in [0, 4, 8, 11, 14, 20, 30, 40, good.len() / 2, good.len() - 1] {
         let error = refused(&good[..length], "0123");
         assert!(matches!(error, BytesError::Truncated(_) | BytesError::Foreign), "{length}: {error}");

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::common::saved::Whole;
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
-use enmm::model::bytes::{decode, encode};
+use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{BlockState, Mechanism};
 use enmm_io::{LoadedCase, load_case, parse_case};
 
@@ -476,9 +476,9 @@ fn energy_from_nowhere_is_told_to_hosts() {
     model.start().unwrap();
     let h = model.internal_step();
     let mut doubts = |lost: f64| -> Vec<u64> {
-        let mut whole: Whole = decode(&model.serialize(&model.save()).unwrap(), model.hash()).unwrap();
+        let mut whole: Whole = decode(Keeper::Model, &model.serialize(&model.save()).unwrap(), model.hash()).unwrap();
         whole.state.ledger.baseline += lost;
-        let saved = model.deserialize(&encode(&whole, model.hash()).unwrap()).unwrap();
+        let saved = model.deserialize(&encode(Keeper::Model, &whole, model.hash()).unwrap()).unwrap();
         model.restore(&saved).unwrap();
         let begin = (model.time() / h).round() as u64;
         let steps = begin..begin + 20;

@@ -49,9 +49,9 @@ fn each_slip_is_told_with_its_key_value_and_range() {
         (CASE.replace("[[fix]]", &format!("{set}[[fix]]")), ["joint_set[0].spacing: is 0.1 m", "0.15"]),
         (
             CASE.replace("[[fix]]", "[[bolt]]\npoints = [[2, 2], [4, 2]]\nyoung = 2e11\narea = 5e-4\n[[fix]]"),
-            ["bolt[0].points: both ends lie in one block", "both sides of a joint"],
+            ["bolt[0]: both ends lie in one block", "both sides of a joint"],
         ),
-        (millimetres, ["domain.outline: the rock is 30000", "4.500e8 m²"]),
+        (millimetres, ["domain.outline: the rock is 30000", "millimetres by 1000"]),
     ] {
         let told = warnings(&text);
         assert_eq!(told.len(), 1, "{told:?}");

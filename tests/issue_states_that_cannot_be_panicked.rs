@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common::saved::Whole;
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::model::bytes::{decode, encode};
+use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::tables::{EdgeId, LawId, NodeId, SideId};
 use enmm_io::load_case;
 
@@ -66,11 +66,11 @@ const DAMAGES: [Damage; 30] = [
 #[test]
 fn what_no_state_can_have_is_refused_by_name() {
     let (mut model, bytes) = model();
-    let whole: Whole = decode(&bytes, model.hash()).expect("a state");
+    let whole: Whole = decode(Keeper::Model, &bytes, model.hash()).expect("a state");
     for (name, damage) in DAMAGES {
         let mut damaged = whole.clone();
         damage(&mut damaged);
-        let damaged = encode(&damaged, model.hash()).expect("bytes");
+        let damaged = encode(Keeper::Model, &damaged, model.hash()).expect("bytes");
         let error = model.deserialize(&damaged).expect_err(name).to_string();
         assert!(error.contains(name) && error.contains("must be"), "{name}: {error}");
     }

@@ -8,7 +8,7 @@ use crate::common::parts::{dynamic, rock};
 use crate::common::simulation;
 use enmm::geometry::Vector;
 use enmm::internals::step::energies;
-use enmm::model::bytes::{decode, encode};
+use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{Simulation, State};
 
 /// One irregular block that swings freely after a uniform stretch.
@@ -146,11 +146,11 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
         measure(|| worst = worst.max(take(simulation, steps))).bytes_current
     };
     let first = watched(&mut simulation, steps / 10..steps / 2);
-    let half = encode(simulation.state(), "long").expect("bytes");
+    let half = encode(Keeper::Model, simulation.state(), "long").expect("bytes");
     endured.grown = first + watched(&mut simulation, steps / 2..steps);
     endured.residual[1] = worst;
     let mut other = make();
-    other.restore(decode(&half, "long").expect("a state"));
+    other.restore(decode(Keeper::Model, &half, "long").expect("a state"));
     for k in steps / 2..steps {
         advance(&mut other, k % 100 == 99);
     }
@@ -158,7 +158,7 @@ fn endure(make: fn() -> Simulation, steps: u64) -> Endured {
     let bits = |simulation: &Simulation| {
         let mut state: State = simulation.state().clone();
         state.counters.searches = 0;
-        encode(&state, "long").expect("bytes")
+        encode(Keeper::Model, &state, "long").expect("bytes")
     };
     endured.same_bits = bits(&simulation) == bits(&other);
     endured

@@ -4,7 +4,7 @@
 use crate::common::claims::stresses;
 use crate::common::parts::dynamic;
 use crate::common::{run_stage, simulation};
-use enmm::model::bytes::{decode, encode};
+use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{Simulation, State, StepReport};
 
 const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
@@ -81,8 +81,8 @@ fn the_state_alone_goes_on_to_the_bit() {
     run_stage(&mut first);
     assert!(first.next_stage().unwrap());
     step(&mut first, 0.008);
-    let bytes = encode(first.state(), "case").unwrap();
-    let state: State = decode(&bytes, "case").unwrap();
+    let bytes = encode(Keeper::Model, first.state(), "case").unwrap();
+    let state: State = decode(Keeper::Model, &bytes, "case").unwrap();
     assert!(second.check(&state).is_ok() && first.state() == &state);
     second.restore(state);
     assert!(first.state().columns[0].velocity.iter().any(|v| v.norm() > 1e-6));

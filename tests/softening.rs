@@ -248,8 +248,8 @@ fn a_failure_goes_on_to_the_same_bits_after_rollback_and_from_a_checkpoint() {
     assert!(first.counters.broken > 0.0 && first.counters.broken <= 0.1 + 1e-9, "{:?}", first.counters);
     simulation.return_to(&middle);
     assert_eq!(run(&mut simulation), first);
-    let bytes = enmm::model::bytes::encode(&middle, "hash").expect("bytes");
-    let read = enmm::model::bytes::decode(&bytes, "hash").expect("a state");
+    let bytes = enmm::model::bytes::encode(enmm::model::bytes::Keeper::Model, &middle, "hash").expect("bytes");
+    let read = enmm::model::bytes::decode(enmm::model::bytes::Keeper::Model, &bytes, "hash").expect("a state");
     let mut other = crate::common::simulation(&text);
     other.check(&read).expect("a state of this model");
     other.restore(read);

@@ -12,7 +12,7 @@ const README_LINES_MAX: usize = 200;
 /// Most comments of the whole repository that begin with the word `What`.
 const RIDDLES_MAX: usize = 60;
 /// Most lines of the engine: what it need not hold goes into a crate of its own.
-const ENGINE_LINES_MAX: usize = 27_020;
+const ENGINE_LINES_MAX: usize = 27_060;
 /// Folders of programs that may print.
 const PRINTERS: [&str; 4] = ["crates/cli/", "tools/", "tests/", "examples/"];
 /// Floors of the house: a crate depends on crates of lower floors alone, tests excepted.

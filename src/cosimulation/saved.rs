@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::model::Simulation;
 use crate::model::fit::{self, Unfit};
 use crate::state::State;
-use crate::state::bytes::{self, BytesError};
+use crate::state::bytes::{self, BytesError, Keeper};
 
 use super::{Cosimulation, CosimulationError, Progress};
 
@@ -131,7 +131,7 @@ impl Cosimulation {
     /// The state is of another model, or cannot be serialised.
     pub fn serialize(&self, saved: &Saved) -> Result<Vec<u8>, CosimulationError> {
         self.check_case(saved)?;
-        Ok(bytes::encode(saved, &self.hash)?)
+        Ok(bytes::encode(Keeper::Model, saved, &self.hash)?)
     }
 
     /// The saved state in bytes that [`Cosimulation::serialize`] made, in this process or another.
@@ -139,7 +139,7 @@ impl Cosimulation {
     /// # Errors
     /// The bytes are damaged, or of another model or version, or hold what cannot be (see [`Cosimulation::check`]).
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
-        let mut saved = bytes::decode(bytes, &self.hash)?;
+        let mut saved = bytes::decode(Keeper::Model, bytes, &self.hash)?;
         self.check(&mut saved)?;
         Ok(saved)
     }

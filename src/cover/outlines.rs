@@ -75,7 +75,7 @@ impl Outlines {
                 let [a, b] = [h, h.twin()].map(|h| arrangement.points[arrangement.origin(h)]);
                 let opposite = element(h.twin());
                 let partial = opposite.is_some_and(|other| block(other) == block(own));
-                let trace = arrangement.label_of(h).trace;
+                let trace = arrangement.label_of(h).trace.filter(|_| opposite.is_some());
                 outlines.pieces.push(BoundaryPiece { a, b, element: own, trace, opposite, partial });
                 h = next_boundary(arrangement, h);
             }

@@ -142,7 +142,8 @@ impl Noder {
 
     /// Splits and crosses until nothing changes.
     pub fn run(&mut self) -> Result<NodingReport, GeometryError> {
-        let mut passes = 1;
+        // Crossings that meet a vertex later are no ends of the drawing.
+        let (mut passes, merged_vertices) = (1, self.merged);
         self.places = self.edges.iter().map(|edge| self.places(edge)).sum();
         self.unsplit = (0..self.edges.len() as u32).collect();
         while let Some(hits) = self.hits()? {
@@ -154,8 +155,7 @@ impl Noder {
             passes += 1;
         }
         self.put_in_order();
-        let (tolerance, merged_vertices) = (self.tolerance, self.merged);
-        Ok(NodingReport { tolerance, passes, merged_vertices, ..Default::default() })
+        Ok(NodingReport { tolerance: self.tolerance, passes, merged_vertices, ..Default::default() })
     }
 
     /// Points and edges; the search structures are freed.

@@ -1,7 +1,7 @@
 //! Bytes of saved states: a payload in a container that says of which case it is and whether it is whole.
 //!
-//! Layout, little-endian: magic `ENMMCKPT`; format version u32; engine version and case hash, each as u32 length and
-//! text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
+//! Layout, little-endian: magic `ENMMCKPT`; format version u32; [`Keeper`] u32; engine version and case hash, each as
+//! u32 length and text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
 
 use std::cmp::Ordering;
 
@@ -9,12 +9,36 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 const MAGIC: &[u8; 8] = b"ENMMCKPT";
-const FORMAT: u32 = 13;
+const FORMAT: u32 = 14;
 const TEXT_MAX: usize = 256;
 /// Bytes of length and checksum.
 const SUMMARY: usize = 12;
 /// Most bytes before the payload.
-pub const HEAD_MAX: usize = MAGIC.len() + 4 + 2 * (4 + TEXT_MAX) + SUMMARY;
+pub const HEAD_MAX: usize = MAGIC.len() + 8 + 2 * (4 + TEXT_MAX) + SUMMARY;
+
+/// Who saved a state and can go on from it: each keeps more than the state itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keeper {
+    /// `enmm run`, with the progress of its stages and outputs.
+    Run,
+    /// A host of a model, by C, C++, Python or Rust, with its communication steps.
+    Model,
+    /// An FMU, with its clock and values.
+    Fmu,
+}
+
+impl Keeper {
+    const ALL: [Self; 3] = [Self::Run, Self::Model, Self::Fmu];
+
+    /// What a message calls it, and how its states are continued.
+    fn told(self) -> [&'static str; 2] {
+        match self {
+            Self::Run => ["a run", "`enmm run --resume` continues it"],
+            Self::Model => ["a library model", "a model of the library continues it, by C, C++, Python or Rust"],
+            Self::Fmu => ["an FMU", "an instance of the same FMU continues it"],
+        }
+    }
+}
 
 /// Why bytes are no saved state that can be used.
 #[derive(Debug, thiserror::Error)]
@@ -32,6 +56,14 @@ pub enum BytesError {
         found: String,
         /// Version that reads it.
         own: String,
+    },
+    /// It was saved by something else.
+    #[error("this is the state of {}, not of {}: {}", found.told()[0], own.told()[0], found.told()[1])]
+    OtherKeeper {
+        /// Who saved it.
+        found: Keeper,
+        /// Who reads it.
+        own: Keeper,
     },
     /// It belongs to another case.
     #[error("the checkpoint is of case {found}, this case is {own}: use the case file that made it")]
@@ -55,9 +87,9 @@ pub const fn engine_version() -> &'static str {
 ///
 /// # Errors
 /// When the payload cannot be serialised.
-pub fn encode<T: Serialize>(payload: &T, case_hash: &str) -> Result<Vec<u8>, BytesError> {
+pub fn encode<T: Serialize>(keeper: Keeper, payload: &T, case_hash: &str) -> Result<Vec<u8>, BytesError> {
     let mut bytes = MAGIC.to_vec();
-    bytes.extend(FORMAT.to_le_bytes());
+    bytes.extend([FORMAT, keeper as u32].map(u32::to_le_bytes).concat());
     for text in [engine_version(), case_hash] {
         bytes.extend((text.len() as u32).to_le_bytes());
         bytes.extend(text.as_bytes());
@@ -75,9 +107,9 @@ pub fn encode<T: Serialize>(payload: &T, case_hash: &str) -> Result<Vec<u8>, Byt
 /// Returns the payload of a checkpoint of the case with this hash.
 ///
 /// # Errors
-/// When the bytes are no whole checkpoint of this engine and case.
-pub fn decode<T: DeserializeOwned>(bytes: &[u8], case_hash: &str) -> Result<T, BytesError> {
-    let head = head(bytes, case_hash)?;
+/// When the bytes are no whole checkpoint of this engine, keeper and case.
+pub fn decode<T: DeserializeOwned>(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<T, BytesError> {
+    let head = head(keeper, bytes, case_hash)?;
     head.check_size(bytes.len() as u64)?;
     let payload = &bytes[head.size..];
     if crc32fast::hash(payload) != head.checksum {
@@ -117,8 +149,8 @@ impl Head {
 /// Reads the head at the beginning of some bytes, of which the first [`HEAD_MAX`] are enough.
 ///
 /// # Errors
-/// When they do not begin a checkpoint of this engine and of the case with this hash.
-pub fn head(bytes: &[u8], case_hash: &str) -> Result<Head, BytesError> {
+/// When they do not begin a checkpoint of this engine, by this keeper and of the case with this hash.
+pub fn head(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<Head, BytesError> {
     let mut reader = Reader { bytes, at: 0 };
     if reader.take(MAGIC.len()).map_err(|_| BytesError::Foreign)? != MAGIC {
         return Err(BytesError::Foreign);
@@ -127,9 +159,15 @@ pub fn head(bytes: &[u8], case_hash: &str) -> Result<Head, BytesError> {
     if format != FORMAT {
         return Err(version(format!("format {format}"), format!("format {FORMAT}")));
     }
+    let found = reader.number()?;
     let engine = reader.text()?;
     if engine != engine_version() {
         return Err(version(format!("enmm {engine}"), format!("enmm {}", engine_version())));
+    }
+    match Keeper::ALL.get(found as usize) {
+        None => return Err(BytesError::Damaged("it was saved by nothing that is known".to_owned())),
+        Some(&found) if found != keeper => return Err(BytesError::OtherKeeper { found, own: keeper }),
+        Some(_) => {}
     }
     let found = reader.text()?;
     if found != case_hash {

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::clock::{PROCESSOR_TICK, forget_peak, memory_peak, processor_seconds};
 use super::models::{Model, advance};
 use super::{BenchError, BenchOptions, Machine, survey};
-use enmm::model::bytes::encode;
+use enmm::model::bytes::{Keeper, encode};
 use enmm::model::tables::Seconds;
 use enmm::model::{Counters, Simulation};
 use enmm_observe::{Joints, Snapshot};
@@ -294,7 +294,7 @@ impl Measured {
         files.iter().for_each(|file| drop(std::fs::remove_file(file)));
         written?;
         let clock = Instant::now();
-        self.checkpoint_bytes = encode(simulation.state(), "").map_err(io::Error::other)?.len();
+        self.checkpoint_bytes = encode(Keeper::Model, simulation.state(), "").map_err(io::Error::other)?.len();
         self.checkpoint_ms = 1e3 * clock.elapsed().as_secs_f64();
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::PointList;
+use super::{Case, PointList};
 
 /// Where the section lies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -231,4 +231,18 @@ pub struct LawRegion {
     pub from: Option<String>,
     /// Law that they take in the region, by name.
     pub to: String,
+}
+
+impl Case {
+    /// What messages, tables and pictures call a joint set: its name, or its key.
+    pub fn joint_set_name(&self, set: usize) -> String {
+        let name = self.joint_sets.get(set).and_then(|set| set.name.clone());
+        name.unwrap_or_else(|| format!("joint_set[{set}]"))
+    }
+
+    /// What messages, tables and pictures call a bolt: its name, or its key.
+    pub fn bolt_name(&self, bolt: usize) -> String {
+        let name = self.bolts.get(bolt).and_then(|bolt| bolt.name.clone());
+        name.unwrap_or_else(|| format!("bolt[{bolt}]"))
+    }
 }

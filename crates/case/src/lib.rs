@@ -16,6 +16,7 @@ mod orientation;
 pub mod philox;
 mod pictures;
 pub mod plausible;
+mod ponding;
 mod random;
 pub mod record;
 mod validate;
@@ -37,6 +38,7 @@ pub use joint_set::{
 };
 pub use orientation::{AZIMUTH, Orientation, Orientations, dip_in_section, trace_angle};
 pub use pictures::{PictureKind, Pictures};
+pub use ponding::{Pond, PondPart};
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
 pub use record::BaseMotionKind;
 pub use validate::Invalid;
@@ -56,6 +58,9 @@ pub struct Case {
     /// Conversions and omissions of the reader of a geometry file; notes of the built model begin with it.
     #[serde(skip)]
     pub reader_notes: Vec<String>,
+    /// Geometry file with the unit of its coordinates and what was made of it.
+    #[serde(skip)]
+    pub drawing_unit: Option<String>,
     /// Rock outline and joint traces from files.
     pub domain: Domain,
     /// Layers of the DXF drawing by name, in any letter case; `"*"` is every other layer.

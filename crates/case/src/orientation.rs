@@ -55,7 +55,7 @@ impl Case {
         let azimuth = self.section.map(|Section { azimuth_deg }| azimuth_deg);
         let mut found = Orientations { azimuth, ..Orientations::default() };
         for (k, set) in self.joint_sets.iter().enumerate() {
-            let name = set.name.clone().unwrap_or_else(|| format!("joint_set[{k}]"));
+            let name = self.joint_set_name(k);
             let friction = self.friction_of(set.law.as_deref());
             found.planes.extend(orientation(&found, set, name, friction));
         }

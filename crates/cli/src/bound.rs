@@ -8,12 +8,13 @@ use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::{BoundFailure, Folder, bound_record, bracket_record, write_bound, write_bound_page, write_bracket_page};
 use enmm_stability::limit_analysis::continuum::{Bracket, TRIANGLES};
-use enmm_stability::limit_analysis::{Bound, Factor, Row, Way};
+use enmm_stability::limit_analysis::{Bound, DUCTILE, Factor, Row, Way};
 use enmm_stability::up_to_stage;
 use serde_json::Value;
 
 use crate::case::CaseArguments;
 use crate::run::{check_folder, directory_for};
+use crate::told::{self, Told};
 use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
 
 /// Arguments of `enmm bound`.
@@ -89,8 +90,12 @@ impl Found {
 pub fn bound(arguments: &Arguments) -> ExitCode {
     let json = arguments.json;
     let directory = arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "bound"));
-    match look(arguments, &directory) {
-        Ok((loaded, _held, found)) => {
+    let mut loaded = match arguments.case.load() {
+        Ok(loaded) => loaded,
+        Err(error) => return Told::default().refuse(&error, json, BAD_INPUT),
+    };
+    match look(arguments, &mut loaded, &directory) {
+        Ok((_held, found)) => {
             print_line(&if json { found.record().to_string() } else { found.text() });
             let written = write_bound(&directory, &loaded, arguments.stage.as_deref(), &found.record());
             if let Err(error) = written.and_then(|()| found.write_page(&directory, &loaded)) {
@@ -101,24 +106,24 @@ pub fn bound(arguments: &Arguments) -> ExitCode {
             }
         }
         Err(error) => {
-            if json {
-                print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
-            }
-            let status = if matches!(error, BoundFailure::Unsolved(_)) { FAILED } else { BAD_INPUT };
-            return fail(&error, status);
+            let (told, status) = match error {
+                BoundFailure::Case(_) => (Told::of(&loaded), BAD_INPUT),
+                BoundFailure::Unsolved(_) => (Told::of(&loaded), FAILED),
+                _ => (Told::default(), BAD_INPUT),
+            };
+            return told.refuse(&error, json, status);
         }
     }
     ExitCode::SUCCESS
 }
 
-/// The case up to the stage that is looked at, the folder for its results, and its bounds.
-fn look(arguments: &Arguments, directory: &Path) -> Result<(LoadedCase, Folder, Found), BoundFailure> {
-    let mut loaded = arguments.case.load()?;
+/// Cuts the case after the stage that is looked at; the folder for its results, and its bounds.
+fn look(arguments: &Arguments, loaded: &mut LoadedCase, directory: &Path) -> Result<(Folder, Found), BoundFailure> {
     loaded.case = up_to_stage(&loaded.case, arguments.stage.as_deref()).map_err(BoundFailure::Options)?;
-    check_folder(directory, &loaded, arguments.force).map_err(BoundFailure::Owned)?;
+    check_folder(directory, loaded, arguments.force).map_err(BoundFailure::Owned)?;
     let held = Folder::open(directory, loaded.source.inputs()).map_err(BoundFailure::Directory)?;
-    let found = Found::of(&loaded, arguments.triangles)?;
-    Ok((loaded, held, found))
+    let found = Found::of(loaded, arguments.triangles)?;
+    Ok((held, found))
 }
 
 fn bracket_text(bracket: &Bracket) -> String {
@@ -133,8 +138,7 @@ fn bracket_text(bracket: &Bracket) -> String {
             "model", bracket.triangles[0], bracket.triangles[1], bracket.programs
         ),
     ];
-    lines.extend(bracket.notes.iter().map(|note| format!("note: {note}")));
-    lines.extend(bracket.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(told::lines(&bracket.warnings, bracket.notes.len()));
     lines.join("\n")
 }
 
@@ -146,8 +150,9 @@ fn text(bound: &Bound) -> String {
         "{:<21} {} blocks, {} free; {} interfaces, {} points, {} pairs of facing corners; {} linear programs",
         "model", bound.blocks[0], bound.blocks[1], bound.interfaces, bound.points, bound.corners, bound.programs
     ));
-    lines.extend(bound.notes.iter().map(|note| format!("note: {note}")));
-    lines.extend(bound.warnings.iter().map(|warning| format!("warning: {warning}")));
+    let (own, of_build): (Vec<&String>, Vec<&String>) = bound.notes.iter().partition(|note| *note == DUCTILE);
+    lines.extend(told::lines(&bound.warnings, of_build.len()));
+    lines.extend(own.into_iter().map(|note| format!("note: {note}")));
     lines.join("\n")
 }
 

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm::model::Simulation;
+use enmm_io::LoadedCase;
 use enmm_io::numbers::three_digits;
 use enmm_run::check::{BridgeRecord, Check};
 use enmm_run::rock_mass::RockMass;
@@ -13,7 +14,8 @@ use enmm_run::{Folder, Observer};
 use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::run::check_folder;
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::told::Told;
+use crate::{BAD_INPUT, FAILED, print_line};
 
 /// Arguments of `enmm check`.
 #[derive(Args)]
@@ -36,21 +38,20 @@ pub struct Arguments {
 pub fn check(arguments: &Arguments) -> ExitCode {
     let Arguments { ref output, json, .. } = *arguments;
     let directory = output.as_deref();
-    let mut screen = Screen::new(json);
-    let looked = look(arguments, &mut screen);
-    screen.close();
-    let refuse = |error: &dyn std::fmt::Display, status| {
-        if json {
-            print_line(&serde_json::json!({ "error": error.to_string() }).to_string());
-        }
-        fail(&error, status)
+    let loaded = match arguments.case.load() {
+        Ok(loaded) => loaded,
+        Err(error) => return Told::default().refuse(&error, json, BAD_INPUT),
     };
+    let mut screen = Screen::new(json);
+    let looked = look(arguments, &loaded, &mut screen);
+    screen.close();
     let (simulation, _held, found) = match looked {
         Ok(looked) => looked,
-        Err(message) => return refuse(&message, BAD_INPUT),
+        Err(message) => return Told::of(&loaded).refuse(&message, json, BAD_INPUT),
     };
     if let Some(Err(error)) = directory.map(|directory| enmm_run::draw_checked(&simulation, directory)) {
-        return refuse(&format!("cannot draw the model ({error}): choose another directory with -o"), FAILED);
+        let message = format!("cannot draw the model ({error}): choose another directory with -o");
+        return Told::default().refuse(&message, json, FAILED);
     }
     if json {
         print_line(&json_line(&found));
@@ -62,11 +63,14 @@ pub fn check(arguments: &Arguments) -> ExitCode {
 }
 
 /// The model of a case, the folder for its picture, and the report.
-fn look(arguments: &Arguments, screen: &mut Screen) -> Result<(Simulation, Option<Folder>, Check), String> {
-    let loaded = arguments.case.load().map_err(|error| error.to_string())?;
+fn look(
+    arguments: &Arguments,
+    loaded: &LoadedCase,
+    screen: &mut Screen,
+) -> Result<(Simulation, Option<Folder>, Check), String> {
     let directory = arguments.output.as_deref();
     if let Some(directory) = directory {
-        check_folder(directory, &loaded, arguments.force).map_err(|error| error.to_string())?;
+        check_folder(directory, loaded, arguments.force).map_err(|error| error.to_string())?;
     }
     let held = directory.map(|directory| Folder::open(directory, loaded.source.inputs())).transpose();
     let held = held.map_err(|error| format!("cannot draw the model ({error}): choose another directory with -o"))?;
@@ -163,11 +167,13 @@ fn table(found: &Check) -> String {
         ("ends of joints", ends(found)),
         ("memory (MB)", memory(found)),
     ];
-    let mut lines: Vec<String> = rows.iter().map(|(name, value)| format!("{name:<22} {value}")).collect();
+    let drawing = found.drawing.iter().map(|drawing| ("drawing", drawing.clone()));
+    let rows = drawing.chain(rows).map(|(name, value)| format!("{name:<22} {value}"));
+    let mut lines: Vec<String> = rows.collect();
     lines.extend(found.rock_masses.iter().map(rock_mass));
     lines.extend(found.records.iter().map(|motion| format!("record {}", motion.text())));
     lines.extend(bridges(&found.bridges));
-    lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.join("\n")
 }

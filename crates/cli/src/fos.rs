@@ -7,7 +7,6 @@ use std::process::ExitCode;
 use clap::Args;
 use enmm::model::BoltCondition;
 use enmm::model::case::Support;
-use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::fos::{Found, remedy};
 use enmm_run::summary::BoltRecord;
@@ -21,6 +20,7 @@ use enmm_stability::strength_reduction::{
 use crate::case::CaseArguments;
 use crate::progress::Search;
 use crate::run::{INTERRUPT, check_folder, directory_for, interrupt};
+use crate::told::{self, Told};
 use crate::{AT_MOST, BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Arguments of `enmm fos`.
@@ -120,21 +120,12 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
     search.close();
     match found {
         Ok(found) => report(arguments, &found, &options.directory, left_out.as_ref()),
-        Err(error @ FosError::NoRest(_)) => {
-            warn(&loaded);
-            refuse(arguments, &error, FAILED)
-        }
+        Err(error @ FosError::NoRest(_)) => Told::of(&loaded).refuse(&error, arguments.json, FAILED),
+        Err(error @ FosError::Case(_)) => Told::of(&loaded).refuse(&error, arguments.json, BAD_INPUT),
         Err(error @ FosError::Output(_)) => refuse(arguments, &error, FAILED),
         Err(error @ FosError::Interrupted) => refuse(arguments, &error, INTERRUPTED),
         Err(error) => refuse(arguments, &error, BAD_INPUT),
     }
-}
-
-/// Reports possible causes why a slope does not come to rest.
-fn warn(loaded: &LoadedCase) {
-    let built = enmm_implicit::simulation(loaded.case.clone()).map(|simulation| simulation.built().warnings.clone());
-    let warnings = loaded.warnings.iter().cloned().chain(built.unwrap_or_default());
-    warnings.for_each(|warning| tell_line(&format!("warning: {warning}")));
 }
 
 fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -> ExitCode {
@@ -202,7 +193,7 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
 }
 
 /// Results of a search, as lines of a name and a text.
-fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String {
+fn result(reduction: &Reduction, found: &Found, before: Option<&String>) -> String {
     let mut lines = vec![String::new()];
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<20} {text}"));
     if let (Some(most), Some(low)) = (reduction.at_most(), reduction.low) {
@@ -245,9 +236,14 @@ fn result(reduction: &Reduction, found: &Found, told: Option<&String>) -> String
         let name = |b: &FailingBlock| format!("{} at ({:.2}, {:.2}) m", b.block, b.position.x, b.position.y);
         tell("failing blocks", listed(trial.failing.iter().map(name)));
     }
-    lines.extend(reduction.simulation.built().notes.iter().map(|note| format!("note: {note}")));
-    let warnings = reduction.warnings.iter().filter(|&warning| told != Some(warning));
-    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
+    let warnings = reduction.warnings.iter().filter(|&warning| before != Some(warning));
+    let notes = &reduction.simulation.built().notes;
+    if matches!(reduction.end, End::StableThroughout) {
+        // They say why nothing fails.
+        lines.extend(told::lines(warnings, 0).into_iter().chain(notes.iter().map(|note| format!("note: {note}"))));
+    } else {
+        lines.extend(told::lines(warnings, notes.len()));
+    }
     lines.join("\n") + "\n"
 }
 
@@ -278,7 +274,7 @@ fn bolts(reduction: &Reduction) -> Option<String> {
         *greatest = if bolt.force > greatest.force { bolt } else { *greatest };
     }
     let of = |bolt: &&BoltRecord| {
-        let name = bolt.name.clone().unwrap_or_else(|| format!("bolt {}", bolt.bolt));
+        let name = bolt.name.clone().unwrap_or_else(|| format!("bolt[{}]", bolt.bolt));
         let share = bolt.utilisation.map_or_else(String::new, |share| format!(", {:.0} % of yield", 100.0 * share));
         let how = bolt.support.map_or("as the rock stretches it", |support| match support {
             Support::Active => "active, at its pretension",

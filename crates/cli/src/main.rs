@@ -18,6 +18,7 @@ mod report;
 mod run;
 mod sample;
 mod stereonet;
+mod told;
 mod verify;
 mod view;
 
@@ -68,7 +69,7 @@ enum Command {
     Check(check::Arguments),
     /// Writes a commented case to begin with.
     New(new::Arguments),
-    /// Writes a case for a DXF drawing, with all its layers, and says what is left open.
+    /// Writes a case for a drawing or another geometry file, and says what is left open.
     Import(import::Arguments),
     /// Packs a case as a co-simulation FMU that needs no other file.
     Fmu(fmu::Arguments),

@@ -12,6 +12,7 @@ use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::case::CaseArguments;
 use crate::progress::Screen;
+use crate::told::Told;
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, SLOPE_FAILED, fail, print_line, tell_line};
 
 /// Set by the first interrupt.
@@ -64,6 +65,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
     match outcome {
         Ok(summary) => report(&summary, &options.directory, arguments.quiet),
         Err(error @ (RunError::Output(_) | RunError::OutputAfter { .. })) => fail(&error, FAILED),
+        Err(error @ RunError::Case(_)) => Told::of(&loaded).refuse(&error, false, BAD_INPUT),
         Err(error) => fail(&error, BAD_INPUT),
     }
 }

@@ -18,6 +18,7 @@ use crate::case::CaseArguments;
 use crate::fos::trial_line;
 use crate::progress::Count;
 use crate::run::{INTERRUPT, check_folder, directory_of, interrupt};
+use crate::told::Told;
 use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
 
 /// Exit status of a panic.
@@ -129,7 +130,11 @@ pub fn sample(arguments: &Arguments) -> ExitCode {
                 EnsembleError::Interrupted { .. } => INTERRUPTED,
                 _ => FAILED,
             };
-            refuse(arguments, &error, status)
+            let told = match error {
+                EnsembleError::Case(_) | EnsembleError::NoAnswer { .. } => Told::of(&loaded),
+                _ => Told::default(),
+            };
+            told.refuse(&error, arguments.json, status)
         }
     }
 }

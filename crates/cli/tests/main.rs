@@ -10,6 +10,7 @@ mod import;
 mod issue_a_failed_run_read_like_a_nuisance;
 mod issue_a_result_replaced_a_record;
 mod issue_an_input_that_is_no_file_was_waited_for;
+mod issue_input_was_believed_whatever_it_held;
 mod issue_results_of_another_case_were_replaced;
 mod issue_two_runs_wrote_into_one_folder;
 #[path = "../../../tests/common/json.rs"]

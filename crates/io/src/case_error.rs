@@ -80,15 +80,27 @@ const SIZE_MAX: u64 = 1 << 28;
 /// First bytes of a binary drawing.
 const BINARY_DXF: &[u8] = b"AutoCAD Binary DXF";
 
+/// Byte order mark.
+const MARK: char = '\u{feff}';
+
 /// Reads a text file.
 ///
 /// # Errors
 /// A message without the file's name: the file cannot be opened, is too large, or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, String> {
-    String::from_utf8(read_bytes(path)?).map_err(|error| {
+    let text = String::from_utf8(read_bytes(path)?).map_err(|error| {
         let position = error.utf8_error().valid_up_to();
         format!("byte {position} is not UTF-8 text, which input files must be; save the file as UTF-8 text")
-    })
+    })?;
+    Ok(unmarked(text))
+}
+
+/// A text without the byte order mark that some editors and exports put before it.
+fn unmarked(mut text: String) -> String {
+    if text.starts_with(MARK) {
+        text.drain(..MARK.len_utf8());
+    }
+    text
 }
 
 /// Reads a record, whose head may have names of places in the code page of Western Europe.
@@ -113,7 +125,7 @@ pub fn read_drawing(path: &Path) -> Result<String, String> {
         return Err("it is a binary DXF, which is not read; save the drawing as ASCII DXF".to_string());
     }
     let bytes = match String::from_utf8(bytes) {
-        Ok(text) => return Ok(unescaped(text)),
+        Ok(text) => return Ok(unescaped(unmarked(text))),
         Err(error) => error.into_bytes(),
     };
     let page = code_page(&bytes);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::files::{open_input, write_atomic};
-use enmm::model::bytes::{BytesError, HEAD_MAX, decode, encode, head};
+use enmm::model::bytes::{BytesError, HEAD_MAX, Keeper, decode, encode, head};
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -25,7 +25,7 @@ pub enum CheckpointError {
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
 pub fn save<T: Serialize>(path: &Path, payload: &T, case_hash: &str) -> io::Result<()> {
-    write_atomic(path, &encode(payload, case_hash).map_err(io::Error::other)?)
+    write_atomic(path, &encode(Keeper::Run, payload, case_hash).map_err(io::Error::other)?)
 }
 
 /// Reads a checkpoint; what is no regular file, or has the wrong head or size, is refused before it is read.
@@ -37,10 +37,10 @@ pub fn load<T: DeserializeOwned>(path: &Path, case_hash: &str) -> Result<T, Chec
     let length = file.metadata().map_err(CheckpointError::Unreadable)?.len();
     let mut bytes = Vec::new();
     file.by_ref().take(HEAD_MAX as u64).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
-    head(&bytes, case_hash)?.check_size(length)?;
+    head(Keeper::Run, &bytes, case_hash)?.check_size(length)?;
     bytes
         .try_reserve_exact((length as usize).saturating_sub(bytes.len()))
         .map_err(|error| CheckpointError::Unreadable(io::Error::new(io::ErrorKind::OutOfMemory, error.to_string())))?;
     file.take(length).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
-    Ok(decode(&bytes, case_hash)?)
+    Ok(decode(Keeper::Run, &bytes, case_hash)?)
 }

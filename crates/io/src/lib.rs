@@ -17,17 +17,21 @@ use std::path::Path;
 
 pub use case_error::CaseError;
 pub use case_file::{CaseSource, LoadedCase, load_case, load_case_with, parse_case};
-pub use geometry_file::dxf::{LayerSurvey, Survey};
+pub use geometry_file::survey::{DEFAULT_LAW, LayerSurvey, Survey};
 pub use schema::schema;
 
-/// Looks at a DXF drawing whose layers have no meaning yet: its layers with their lines in metres, curves within
+/// Looks at a geometry file whose lines have no meaning yet: its layers with their lines in metres, curves within
 /// `tolerance` (m).
 ///
 /// # Errors
-/// The file is no drawing, or a block cannot be placed, with file and line.
-pub fn survey_drawing(path: &Path, tolerance: f64) -> Result<Survey, CaseError> {
+/// The file is none of its format, or a block of a drawing cannot be placed, with file and line.
+pub fn survey_geometry(path: &Path, tolerance: f64) -> Result<Survey, CaseError> {
     let file = path.display().to_string();
-    let text =
-        case_error::read_drawing(path).map_err(|message| CaseError::Unreadable { file: file.clone(), message })?;
-    geometry_file::dxf::survey(&file, &text, tolerance)
+    let unreadable = |message| CaseError::Unreadable { file: file.clone(), message };
+    let format = geometry_file::Format::of(path).map_err(unreadable)?;
+    let text = geometry_file::text(format, path).map_err(unreadable)?;
+    match format {
+        geometry_file::Format::Dxf => geometry_file::dxf::survey(&file, &text, tolerance),
+        _ => geometry_file::survey::survey(format, &file, &text),
+    }
 }

@@ -1,7 +1,7 @@
 //! Drawings become sections: units, layers, curves, blocks; what is not used is said, what is wrong is located.
 
 use crate::support::{with_geometry, with_geometry_and};
-use enmm_io::{LoadedCase, load_case, survey_drawing};
+use enmm_io::{LoadedCase, load_case, survey_geometry};
 
 const TRIANGLE: [[f64; 2]; 3] = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
 
@@ -303,7 +303,7 @@ fn curves_that_cannot_be_drawn_are_located() {
         ),
         (
             spline("71\n3\n11\n0\n21\n0\n"),
-            "SPLINE has no control points, only points to be fitted; convert it to a polyline; save the drawing again",
+            "SPLINE has neither control points nor two points to be fitted; save the drawing again",
         ),
         (
             spline("71\n1\n40\n0\n40\n0\n40\n1\n10\n0\n20\n0\n10\n1\n20\n0\n"),
@@ -328,13 +328,13 @@ fn layers_of_old_drawings_keep_their_letters() {
     let text = DXF.replacen("0\nSECTION\n2\nHEADER\n", head, 1).replace("faults", "Kl?fte \\U+03B1");
     let bytes: Vec<u8> = text.bytes().map(|byte| if byte == b'?' { 0xfc } else { byte }).collect();
     std::fs::write(&path, &bytes).unwrap();
-    let layers = survey_drawing(&path, 0.1).unwrap().layers;
+    let layers = survey_geometry(&path, 0.1).unwrap().layers;
     let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).collect();
     assert_eq!(names, ["0", "clean", "Klüfte α", "outline"]);
     let other = String::from_utf8_lossy(&bytes).replace("1252", "932").replace('\u{fffd}', "?");
     std::fs::write(&path, other.bytes().map(|byte| if byte == b'?' { 0xfc } else { byte }).collect::<Vec<u8>>())
         .unwrap();
-    let error = survey_drawing(&path, 0.1).unwrap_err().to_string();
+    let error = survey_geometry(&path, 0.1).unwrap_err().to_string();
     assert!(
         error.ends_with(
             "it is text in the code page \"ANSI_932\", and UTF-8 and ANSI_1252 are read; save it as DXF 2007"

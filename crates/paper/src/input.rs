@@ -127,7 +127,7 @@ fn laws(input: &Value) -> String {
 fn sets(input: &Value) -> String {
     let row = |(k, set): (usize, &Value)| -> Vec<Cell> {
         let name = match text(&set["name"]) {
-            "" => format!("set {}", k + 1),
+            "" => format!("joint_set[{k}]"),
             name => name.to_owned(),
         };
         let scatter = if set["angle_sd_deg"].is_null() { &set["dip_sd_deg"] } else { &set["angle_sd_deg"] };
@@ -265,7 +265,7 @@ fn motions(input: &Value) -> String {
 
 /// Name of a bolt, or its number.
 pub fn bolt_name(bolt: &Value, k: usize) -> Cell {
-    bolt["name"].as_str().map_or_else(|| Cell::from(format!("bolt {}", k + 1)), Cell::from)
+    bolt["name"].as_str().map_or_else(|| Cell::from(format!("bolt[{k}]")), Cell::from)
 }
 
 fn bolts(input: &Value) -> String {

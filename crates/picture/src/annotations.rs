@@ -282,7 +282,7 @@ fn sets(simulation: &Simulation) -> Vec<SetMark> {
         let distance = |p: &&Point| (**p - wanted).norm();
         let scatter = if set.dip_sd_deg > 0.0 { format!(" ± {}", number_text(set.dip_sd_deg)) } else { String::new() };
         SetMark {
-            name: set.name.clone().unwrap_or_else(|| format!("set {}", k + 1)),
+            name: simulation.case().joint_set_name(k),
             detail: format!("{}, every {} m", dip(set.angle().to_degrees(), &scatter), short(set.spacing)),
             direction,
             place: middles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied(),

@@ -18,6 +18,8 @@ const LIST: f64 = 740.0;
 const TEXT: f64 = 17.0;
 const SMALL: f64 = 14.0;
 const ROW: f64 = 24.0;
+/// Longest name (signs) that stands beside marks.
+const LABEL: usize = 4;
 /// Most sets in the list.
 const LISTED: usize = 14;
 
@@ -163,7 +165,7 @@ impl Stereonet {
             sheet.circle(dip, 5.0, mark(found.planes.contains(&k)));
             let square = Rect { left: pole[0] - 5.0, top: pole[1] - 5.0, width: 10.0, height: 10.0 };
             sheet.rect(&square, mark(found.toppling.contains(&k)));
-            let name = (k + 1).to_string();
+            let name = self.label(k);
             sheet.text([dip[0] + 9.0, dip[1] + 5.0], &name, TextStyle::new(SMALL).colour(colour).halo());
             sheet.text([pole[0] + 9.0, pole[1] + 5.0], &name, TextStyle::new(SMALL).colour(colour).halo());
         }
@@ -178,12 +180,18 @@ impl Stereonet {
         }
         for (a, b, line) in &found.wedges {
             let [x, y] = self.at(line);
-            let name = format!("{}+{}", a + 1, b + 1);
+            let name = format!("{}+{}", self.label(*a), self.label(*b));
             sheet.text([x + 10.0, y - 6.0], &name, TextStyle::new(SMALL).colour(ACCENT).halo());
         }
     }
 
-    /// Sets with their numbers, and what the checks find.
+    /// What stands beside the marks of a set: its name where that is short, else its number in the list.
+    fn label(&self, set: usize) -> String {
+        let name = &self.sets[set].name;
+        if name.chars().count() <= LABEL { name.clone() } else { (set + 1).to_string() }
+    }
+
+    /// Sets with their labels, and what the checks find.
     fn list(&self, sheet: &mut Sheet, found: &Failures) {
         let mut y = 110.0;
         let mut say = |sheet: &mut Sheet, text: &str, style: TextStyle, step: f64| {
@@ -194,7 +202,9 @@ impl Stereonet {
         say(sheet, &format!("face {dip:.0}°/{direction:03.0}°"), TextStyle::new(TEXT), 1.4 * ROW);
         for (k, (set, remark)) in self.sets.iter().zip(&self.remarks).enumerate().take(LISTED) {
             let Plane { dip, direction } = set.plane;
-            let text = format!("{}  {}  {dip:.0}°/{direction:03.0}°  φ {:.0}°", k + 1, set.name, set.friction);
+            let label = self.label(k);
+            let name = if label == set.name { label } else { format!("{label}  {}", set.name) };
+            let text = format!("{name}  {dip:.0}°/{direction:03.0}°  φ {:.0}°", set.friction);
             say(sheet, &text, TextStyle::new(TEXT).colour(colour(k)), 18.0);
             say(sheet, remark, TextStyle::new(SMALL).colour(GREY), ROW);
         }

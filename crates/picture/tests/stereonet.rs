@@ -32,7 +32,8 @@ fn a_net_names_what_fails() {
     };
     assert_eq!(net.friction(), Some(30.0));
     let svg = net.picture().svg();
-    for part in ["A cut &lt;north&gt;", "plane failure: bedding", "toppling: columns", "1+2", "face 65°/120°", "a note"]
+    for part in
+        ["A cut &lt;north&gt;", "plane failure: bedding", "toppling: columns", "1+K1", "face 65°/120°", "a note"]
     {
         assert!(svg.contains(part), "{part:?} is not in the picture");
     }

@@ -22,6 +22,9 @@ const TINY_BLOCK: f64 = 1e-3;
 /// Counts, areas, masses and warnings of a built model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
+    /// Geometry file with the unit of its coordinates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawing: Option<String>,
     /// Number of blocks.
     pub blocks: usize,
     /// Areas of the blocks (m²), ascending.
@@ -98,6 +101,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
     let (state, workspace) = simulation.look_ahead();
     let triangle = 0.75f64.sqrt() / 2.0 * covers.mesh.size.powi(2);
     Check {
+        drawing: simulation.case().drawing_unit.clone(),
         blocks: covers.block_count(),
         total_area: covers.element_area.iter().sum(),
         elements: covers.element_count(),
@@ -128,6 +132,12 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         notes: built.notes.iter().cloned().chain(corner_note(simulation)).collect(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }
+}
+
+/// How many notes of the drawing and of the build there are, for commands that do not repeat them.
+pub fn count_of_notes(count: usize) -> Option<String> {
+    let notes = if count == 1 { "note" } else { "notes" };
+    (count > 0).then(|| format!("{count} {notes} on the drawing and the build, see `enmm check`"))
 }
 
 /// Corners of the last stage that meet rock ahead of them: they may carry the slope.

@@ -23,7 +23,7 @@ pub mod verdict;
 pub mod vtu;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};
-pub use check::check;
+pub use check::{check, count_of_notes};
 pub use enmm_picture::Projection;
 pub use ensemble::{
     Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns,

@@ -119,10 +119,7 @@ fn joint_name(simulation: &Simulation, trace: usize) -> String {
     let case: &Case = simulation.case();
     let sets = &simulation.built().set_start;
     match sets.windows(2).position(|range| (range[0]..range[1]).contains(&trace)) {
-        Some(k) => {
-            let named = case.joint_sets.get(k).and_then(|set| set.name.clone());
-            named.unwrap_or_else(|| format!("joint_set[{k}]"))
-        }
+        Some(k) => case.joint_set_name(k),
         None if trace < case.joints.len() => format!("joint[{trace}]"),
         None => "other joints".to_owned(),
     }

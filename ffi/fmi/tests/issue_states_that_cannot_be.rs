@@ -71,12 +71,12 @@ fn infinite_numbers_in_saved_states_are_refused_or_do_no_harm() {
         let token = instance.table().token.clone();
         let good = instance.save_state(None).unwrap();
         let bytes = instance.serialize_state(good).unwrap().to_vec();
-        let start = bytes::encode(&Raw(&[]), &token).unwrap().len();
+        let start = bytes::encode(bytes::Keeper::Fmu, &Raw(&[]), &token).unwrap().len();
         let (mut refused, mut named) = (0, 0);
         for at in start..bytes.len() - 8 {
             let mut payload = bytes[start..].to_vec();
             payload[at - start..at - start + 8].copy_from_slice(&f64::INFINITY.to_le_bytes());
-            let forged = bytes::encode(&Raw(&payload), &token).unwrap();
+            let forged = bytes::encode(bytes::Keeper::Fmu, &Raw(&payload), &token).unwrap();
             instance.take_messages();
             match instance.deserialize_state(&forged, None) {
                 Err(status) => {

@@ -24,8 +24,9 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
                 let block = |end: usize| positions.covers.element_block[line.elements[end]];
                 if block(0) == block(1) && line.meetings.is_empty() {
                     warnings.push(format!(
-                        "bolt[{k}].points: both ends lie in one block and the bolt crosses no joint, so that it holds \
-                         nothing: move its points to both sides of a joint"
+                        "{}: both ends lie in one block and the bolt crosses no joint, so that it holds nothing: move \
+                         its points to both sides of a joint",
+                        case.bolt_name(k)
                     ));
                 }
                 segments.push(line.whole(k as u32, bolt));
@@ -35,15 +36,17 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
                 if crossings.is_empty() {
                     return Err(Invalid {
                         key: format!("bolt[{k}].points"),
-                        message: "the bolt crosses no joint, so that it would do nothing: move its points to both \
-                                  sides of a joint, or set `anchorage = \"ends\"`"
-                            .into(),
+                        message: format!(
+                            "{} crosses no joint, so that it would do nothing: move its points to both sides of a \
+                             joint, or set `anchorage = \"ends\"`",
+                            bolt.name.as_ref().map_or("the bolt".to_owned(), |name| format!("the bolt {name:?}"))
+                        ),
                     });
                 }
                 segments.extend(crossings.iter().map(|c| line.bridge(k as u32, bolt, c)));
                 let outside = line.outside();
                 if outside > 0.0 {
-                    let name = bolt.name.clone().unwrap_or_else(|| format!("bolt[{k}]"));
+                    let name = case.bolt_name(k);
                     warnings.push(format!("{outside:.3} m of the grouted bolt {name:?} lie outside the rock"));
                 }
             }

@@ -2,11 +2,11 @@
 
 use crate::contact::LawId;
 use crate::geometry::ends::{EndChange, EndDistances, EndLine, NearEnd, join_ends};
-use crate::geometry::{GeometryError, Point, TraceId};
+use crate::geometry::{GeometryError, Point, TraceId, polygon, segment};
 use crate::model::case::{Case, JointSet};
 
 use super::joints::Joints;
-use super::law_of;
+use super::{law_of, points};
 
 /// Ends that one message names.
 const NAMED: usize = 5;
@@ -22,7 +22,7 @@ const NEAR_RATIO: f64 = 10.0;
 pub struct TraceEnd {
     /// Its trace.
     pub trace: usize,
-    /// The joint: `joint[3]`, `joint_set[0]`.
+    /// The joint: `joint[3]`, or the name of its set.
     pub name: String,
     /// Where it was drawn to end (m).
     pub place: Point,
@@ -58,12 +58,13 @@ pub(super) fn join(
 ) -> Result<Vec<TraceEnd>, GeometryError> {
     let mut lines: Vec<&mut Vec<Point>> = joints.traces.iter_mut().map(|(points, _)| points).collect();
     let mut ends = join_ends(outlines, &mut lines, distances, is_rock)?;
-    let is_listed = |end: &&NearEnd| end.change != EndChange::Kept || !ends_on_purpose(case, joints, end.trace);
+    let tolerance = distances.tolerance;
+    let is_listed = |end: &&NearEnd| end.change != EndChange::Kept || !ends_on_purpose(case, joints, end, tolerance);
     ends.retain(|end| is_listed(&end));
     if let Some(law) = case.domain.bridge_law.as_ref().and_then(|name| law_of(case, name)) {
         ends.iter_mut().for_each(|end| bridge(end, law, joints));
     }
-    Ok(ends.iter().map(|end| named(end, |trace| name(joints, trace))).collect())
+    Ok(ends.iter().map(|end| named(end, |trace| name_in(case, &joints.set_start, &joints.bridges, trace))).collect())
 }
 
 /// An end with the names of its trace and of its line.
@@ -101,21 +102,22 @@ fn set_of(set_start: &[usize], trace: TraceId) -> Option<usize> {
     set_start.windows(2).position(|range| (range[0]..range[1]).contains(&trace.index()))
 }
 
-fn ends_on_purpose(case: &Case, joints: &Joints, trace: TraceId) -> bool {
-    let is_short = |set: &JointSet| set.trace_length.is_some() || set.gap > 0.0;
-    set_of(&joints.set_start, trace).is_some_and(|set| is_short(&case.joint_sets[set]))
-}
-
-fn name(joints: &Joints, trace: TraceId) -> String {
-    name_in(&joints.set_start, &joints.bridges, trace)
+/// Whether the set of a trace is meant to end in the rock, by its lengths or at its own region.
+fn ends_on_purpose(case: &Case, joints: &Joints, end: &NearEnd, tolerance: f64) -> bool {
+    let at_region = |set: &JointSet| {
+        let region = points(set.region.as_deref().unwrap_or_default());
+        polygon::sides(&region).any(|(a, b)| segment::distance(end.place, a, b) <= tolerance)
+    };
+    let is_short = |set: &JointSet| set.trace_length.is_some() || set.gap > 0.0 || at_region(set);
+    set_of(&joints.set_start, end.trace).is_some_and(|set| is_short(&case.joint_sets[set]))
 }
 
 /// The name of a trace, where sets begin with some traces and bridges are others.
-pub(super) fn name_in(set_start: &[usize], bridges: &[usize], trace: TraceId) -> String {
+pub(super) fn name_in(case: &Case, set_start: &[usize], bridges: &[usize], trace: TraceId) -> String {
     if let Ok(bridge) = bridges.binary_search(&trace.index()) {
         return format!("rock bridge {bridge}");
     }
-    set_of(set_start, trace).map_or_else(|| format!("joint[{}]", trace.index()), |set| format!("joint_set[{set}]"))
+    set_of(set_start, trace).map_or_else(|| format!("joint[{}]", trace.index()), |set| case.joint_set_name(set))
 }
 
 /// The ends that were joined to a line, and those that rock holds, in a line of text each.

@@ -41,5 +41,5 @@ pub fn locked_ends(case: &Case, built: &Built) -> Result<Vec<TraceEnd>, Invalid>
     };
     let ends: Vec<NearEnd> = ends.into_iter().filter_map(shortest).filter(yields).collect();
     let bridges: Vec<usize> = built.bridges.iter().map(|bridge| bridge.trace).collect();
-    Ok(ends.iter().map(|end| named(end, |trace| name_in(&built.set_start, &bridges, trace))).collect())
+    Ok(ends.iter().map(|end| named(end, |trace| name_in(case, &built.set_start, &bridges, trace))).collect())
 }

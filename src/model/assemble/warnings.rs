@@ -4,7 +4,7 @@ use crate::contact::LawId;
 use crate::cover::Crumb;
 use crate::geometry::ends::EndDistances;
 use crate::geometry::{NodingReport, Point, polygon};
-use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver};
+use crate::model::case::{Case, Integrator, Invalid, LawRegion, Solver, plausible};
 use crate::state::Model;
 
 use super::ends::{self, TraceEnd};
@@ -13,8 +13,6 @@ use super::law_of;
 use super::locator::Locator;
 use super::points;
 
-/// Longest side of the box of a slope (m).
-const LONGEST: f64 = 2e4;
 /// Length of a fixed edge over that of the boundary on it.
 const EDGE_RATIO: f64 = 2.0;
 /// Share of the greatest in-situ stress that a tension may have, as at a rough surface.
@@ -90,7 +88,10 @@ fn lost_joints(noding: &NodingReport, case: &Case, Joints { traces, set_start, .
     let is_lost = |range: &[usize]| (range[0]..range[1]).all(|t| ignored.binary_search(&t).is_ok());
     warnings.extend(sets.filter(|(_, range)| is_lost(range)).map(|(k, range)| {
         let count = range[1] - range[0];
-        format!("joint_set[{k}]: none of its {count} traces cuts rock; correct its region, origin or spacing")
+        format!(
+            "{}: none of its {count} traces cuts rock; correct its region, origin or spacing",
+            case.joint_set_name(k)
+        )
     }));
     warnings
 }
@@ -162,17 +163,12 @@ fn without_effect(solver: &Solver) -> Vec<String> {
     others.iter().filter(|(_, set)| *set).map(tell).collect()
 }
 
-/// A model that is larger than slopes are, or smaller than its mesh.
+/// A model that is larger or smaller than slopes are, or smaller than its mesh.
 fn extent(case: &Case, model: &Model) -> Option<String> {
     let (low, high) = polygon::bounds(&model.covers.polygons.points);
     let span = high - low;
-    if span.max() > LONGEST {
-        let area: f64 = model.covers.element_area.iter().sum();
-        return Some(format!(
-            "domain.outline: the rock is {:.6} m by {:.6} m, {area:.3e} m²; slopes are up to {LONGEST} m: coordinates \
-             are in metres, so divide those in millimetres by 1000",
-            span.x, span.y
-        ));
+    if let Some(odd) = plausible::odd_size([span.x, span.y]) {
+        return Some(format!("domain.outline: {odd}"));
     }
     let size = case.mesh.size;
     (size > span.max()).then(|| {

@@ -27,6 +27,7 @@ pub fn build(case: &CaseArguments, face: Option<Plane>, shown: &Shown, bounds: &
         let others = loaded.source.inputs().iter().filter(|input| **input != case.path).cloned();
         std::iter::once(case.path.clone()).chain(others).collect()
     });
+    let told = loaded.as_ref().ok().map(|loaded| listed(&loaded.warnings, &loaded.case.reader_notes));
     match loaded.and_then(|loaded| Ok((pictured(&loaded)?, loaded))) {
         Ok((pictured, loaded)) => {
             let mut number = 0;
@@ -55,7 +56,10 @@ pub fn build(case: &CaseArguments, face: Option<Plane>, shown: &Shown, bounds: &
             });
             bounds.ask(number, loaded);
         }
-        Err(error) => shown.change(|view| view.error = Some(error)),
+        Err(error) => shown.change(|view| {
+            view.error = Some(error);
+            view.notes = told.unwrap_or_default();
+        }),
     }
     inputs
 }
@@ -73,13 +77,18 @@ fn pictured(loaded: &LoadedCase) -> Result<Pictured, String> {
     simulation.validate_stages().map_err(invalid)?;
     let page = page(loaded, &simulation).map_err(|error| format!("cannot make the page ({error})"))?;
     let (built, covers) = (simulation.built(), &simulation.model().covers);
-    let notes = built.notes.iter().map(|note| format!("note: {note}"));
-    let warnings = loaded.warnings.iter().chain(&built.warnings).map(|warning| format!("warning: {warning}"));
+    let warnings = [loaded.warnings.as_slice(), &built.warnings].concat();
     Ok(Pictured {
         page,
         facts: facts(loaded, covers.block_count(), covers.element_count()),
-        notes: notes.chain(warnings).collect(),
+        notes: listed(&warnings, &built.notes),
     })
+}
+
+/// Warnings, then notes, a line each.
+fn listed(warnings: &[String], notes: &[String]) -> Vec<String> {
+    let warnings = warnings.iter().map(|warning| format!("warning: {warning}"));
+    warnings.chain(notes.iter().map(|note| format!("note: {note}"))).collect()
 }
 
 /// The page, made in a folder of the system that is gone afterwards.

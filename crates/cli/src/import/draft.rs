@@ -1,9 +1,10 @@
-//! The case for a drawing: its text, and the report of what was read, assumed and left open.
+//! The case for a geometry file: its text, and the report of what was read, assumed and left open.
 
 use std::fmt::Write;
 use std::path::Path;
 
-use enmm_io::{LayerSurvey, Survey};
+use enmm::model::case::plausible;
+use enmm_io::{DEFAULT_LAW, LayerSurvey, Survey};
 
 use super::layers::{Mapped, mapped, outline};
 
@@ -52,7 +53,10 @@ impl<'a> Draft<'a> {
         }
         let title = Path::new(drawing).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let _ = write!(text, "title = {title:?}\n\n[domain]\ngeometry_file = {drawing:?}\n");
-        for mapped in &self.layers {
+        if let Some(layer) = self.lawless() {
+            let _ = writeln!(text, "joint_law = {:?}", layer.name);
+        }
+        for mapped in self.layers.iter().filter(|_| self.survey.is_drawing) {
             text += &layer_table(mapped);
         }
         let _ = write!(text, "\n[mesh]\nsize = {}\n", self.mesh_size());
@@ -72,10 +76,18 @@ impl<'a> Draft<'a> {
         text + "\n[[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration_max = 10\n"
     }
 
+    /// Joints of a file that is no drawing to which it gives no law.
+    fn lawless(&self) -> Option<&LayerSurvey> {
+        self.survey.layers.iter().find(|layer| !self.survey.is_drawing && layer.name == DEFAULT_LAW)
+    }
+
     /// Lines to print: layers, assumptions and open points.
     pub fn report(&self, case: &Path) -> String {
         let width = self.layers.iter().map(|mapped| mapped.layer.name.chars().count()).max().unwrap_or(0).max(5);
-        let mut lines: Vec<String> = self.survey.notes.iter().map(|note| format!("note: {note}")).collect();
+        let mut lines = vec![format!("coordinates are in {}", self.survey.unit)];
+        let [[left, right], [low, high]] = self.bounds();
+        lines.extend(plausible::odd_size([right - left, high - low]).map(|odd| format!("warning: {odd}")));
+        lines.extend(self.survey.notes.iter().map(|note| format!("note: {note}")));
         lines.push(format!("{:<width$}  {:<8}  entities", "layer", "use"));
         for mapped in &self.layers {
             let entities: Vec<String> = mapped.layer.counts.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
@@ -101,7 +113,9 @@ impl<'a> Draft<'a> {
             assumed.extend(mapped.reason.iter().map(|why| format!("layer {name:?} is {:?}: {why}", mapped.role)));
             open.extend(mapped.open.iter().map(|why| format!("layer {name:?}: {why}")));
         }
-        if self.outline.is_none() {
+        if self.outline.is_none() && !self.survey.is_drawing {
+            open.push("the file has no outline: give one in `domain.outline`".to_owned());
+        } else if self.outline.is_none() {
             open.push("no layer is the outline: give one `use = \"outline\"`, with one closed line".to_owned());
         }
         assumed.push(format!("mesh.size is {} m, a {TRIANGLES_PER_HEIGHT}th of the height, rounded", self.mesh_size()));

@@ -1,4 +1,5 @@
-//! Uses of the layers of a drawing, by their names and by the lines on them.
+//! Uses of the layers of a drawing, by their names and by the lines on them; other files say themselves what their
+//! lines are.
 
 use enmm_io::{LayerSurvey, Survey};
 
@@ -26,12 +27,22 @@ pub fn mapped(survey: &Survey) -> Vec<Mapped<'_>> {
     let outline = outline(survey);
     let mut names = Vec::new();
     let open = |layer: &LayerSurvey| layer.problems.values().next().cloned();
+    if !survey.is_drawing {
+        return survey.layers.iter().map(said).collect();
+    }
     let of = |layer| Mapped { open: open(layer), ..mapped_layer(layer, outline) };
     let mut all: Vec<Mapped> = survey.layers.iter().map(of).collect();
     for mapped in all.iter_mut().filter(|mapped| ["joint", "bolt"].contains(&mapped.role)) {
         mapped.name = Some(free_name(&mapped.layer.name, &mut names));
     }
     all
+}
+
+/// A layer that the file itself has given a meaning: a loop, or joints of the law with its name.
+fn said(layer: &LayerSurvey) -> Mapped<'_> {
+    let loops = ["outline", "hole", "island"].into_iter().find(|name| *name == layer.name);
+    let name = if loops.is_some() { None } else { Some(layer.name.clone()) };
+    Mapped { layer, role: loops.unwrap_or("joint"), name, reason: None, open: None }
 }
 
 fn mapped_layer<'a>(layer: &'a LayerSurvey, outline: Option<&LayerSurvey>) -> Mapped<'a> {

@@ -1,4 +1,4 @@
-//! `enmm import`: writes a case for a DXF drawing, with every layer, and says what is left open.
+//! `enmm import`: writes a case for a geometry file, with every layer of a drawing, and says what is left open.
 
 mod draft;
 mod layers;
@@ -16,7 +16,7 @@ use crate::{BAD_INPUT, fail, print_line};
 #[derive(Args)]
 #[command(after_help = "Example: enmm import map.dxf -o slope.toml")]
 pub struct Arguments {
-    /// Drawing (ASCII DXF).
+    /// Drawing (ASCII DXF), or a file of GeoJSON, JSON, WKT or CSV.
     drawing: PathBuf,
     /// Case file to write, which must not be there yet; default: the name of the drawing with `.toml`, here.
     #[arg(short, long, value_name = "FILE")]
@@ -26,13 +26,13 @@ pub struct Arguments {
     examples: bool,
 }
 
-/// Reads the layers of a drawing and writes a case that maps all of them.
+/// Reads the layers of a drawing, or the laws of another file, and writes a case that maps all of them.
 pub fn import(arguments: &Arguments) -> ExitCode {
     let Arguments { drawing, output, examples } = arguments;
     let name = Path::new(drawing.file_stem().unwrap_or_default()).with_extension("toml");
     let case = output.clone().unwrap_or(name);
     // Arcs count by their corners here; the case says how close they are drawn.
-    let survey = match enmm_io::survey_drawing(drawing, f64::INFINITY) {
+    let survey = match enmm_io::survey_geometry(drawing, f64::INFINITY) {
         Ok(survey) => survey,
         Err(error) => return fail(&error, BAD_INPUT),
     };

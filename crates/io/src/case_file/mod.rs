@@ -5,7 +5,7 @@ mod reader;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::case_error::{CaseError, read_drawing, read_record, read_text};
+use super::case_error::{CaseError, read_record, read_text};
 use super::geometry_file::{self, Fault, Format, Geometry, Trace};
 use super::lines::{LineMap, beginnings};
 use super::record_file::{self, Record, Wanted};
@@ -60,6 +60,12 @@ impl LoadedCase {
         warnings.extend(plausible::doubts(&typed));
         let hash = case.fingerprint().map_err(located)?;
         warnings.extend(case.ground_motions().into_iter().flat_map(|motion| motion.warnings));
+        for pond in case.ponds() {
+            let told = if pond.is_slip() { &mut warnings } else { &mut case.reader_notes };
+            if !told.contains(&pond.text()) {
+                told.push(pond.text());
+            }
+        }
         let settings = source.settings.values().cloned().collect();
         Ok(Self { case, typed, source, hash, orientations, warnings, settings })
     }
@@ -275,6 +281,7 @@ fn merge_geometry_file(case: &mut Case, source: &mut CaseSource, base_dir: &Path
     let named = |text: &String| format!("{}: {text}", source.geometry_file);
     let warnings = geometry.warnings.iter().map(named).collect();
     case.reader_notes.extend(geometry.notes.iter().map(named));
+    case.drawing_unit = Some(named(&geometry.unit));
     merge(case, source, geometry);
     case.layers.clear();
     (case.transform, case.domain.curve_tolerance) = (None, None);
@@ -285,7 +292,7 @@ fn read_geometry_file(case: &Case, source: &CaseSource, path: &Path) -> Result<G
     let file = &source.geometry_file;
     let located = |message: String| source.locate("domain.geometry_file", &format!("{file:?}: {message}"));
     let format = Format::of(path).map_err(located)?;
-    let text = if format == Format::Dxf { read_drawing(path) } else { read_text(path) }.map_err(located)?;
+    let text = geometry_file::text(format, path).map_err(located)?;
     geometry_file::parse(format, file, &text, case).map_err(|fault| match fault {
         Fault::File(error) => error,
         Fault::Case(invalid) => source.locate(&invalid.key, &invalid.message),

@@ -1,12 +1,16 @@
-//! GeoJSON: lines are joint traces, whose property `law` may name a joint law; the first polygon is the outline, its
-//! inner rings are holes, further polygons are islands. Coordinates are metres.
+//! GeoJSON: lines are joint traces, whose property `law` (or `joint_law`, or `layer`, in any letter case) may name a
+//! joint law, or `outline`, `hole` and `island`; the first polygon is the outline, its inner rings are holes, further
+//! polygons are islands. Coordinates are metres, or what the member `crs` of older files says.
 
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 
 use super::json_text::{Document, shown};
-use super::{Geometry, Located, Trace};
+use super::names::{Laws, Part, Purpose, Ring};
+use super::unit::Declared;
+use super::upright::Plane;
+use super::{Geometry, Located};
 use crate::case_error::CaseError;
 use enmm::model::case::key::Key;
 
@@ -28,43 +32,100 @@ fn type_of(value: &Value) -> &str {
 ///
 /// # Errors
 /// The first thing that cannot be used.
-pub fn parse(document: Document) -> Result<Geometry, CaseError> {
-    let mut reader = Reader { document: &document, geometry: Geometry::default(), high: 0, unused: BTreeMap::new() };
-    reader.object(&Key::root(), &document.value, &None)?;
-    let Reader { mut geometry, high, unused, .. } = reader;
+pub fn parse(document: Document, laws: &Laws) -> Result<Geometry, CaseError> {
+    let mut heights = Vec::new();
+    collect(&document.value, &mut heights);
+    let mut reader = Reader {
+        document: &document,
+        laws,
+        plane: Plane::of(heights),
+        geometry: Geometry::default(),
+        high: 0,
+        unused: BTreeMap::new(),
+        properties: BTreeMap::new(),
+    };
+    reader.object(&Key::root(), &document.value, &Said::default())?;
+    let Reader { mut geometry, high, unused, plane, properties, .. } = reader;
     geometry.warnings.extend(unused.iter().map(|(name, count)| format!("{count} {name} not used: no line or polygon")));
-    if high > 0 {
+    if !properties.is_empty() {
+        let listed: Vec<String> = properties.iter().map(|(name, count)| format!("{name} ({count})")).collect();
+        geometry.warnings.push(format!("properties not used: {}", listed.join(", ")));
+    }
+    if high > 0 && plane == Plane::Flat {
         geometry.warnings.push(format!("the third coordinate of {high} points is not used"));
     }
+    geometry.notes.extend(plane.note());
+    geometry.declared = declared(&document);
     geometry.lines = document.lines;
     Ok(geometry)
 }
 
-/// A joint law with its key.
-type Law = Option<(String, String)>;
+/// The points of all lines and polygons, each with its height where it has one.
+fn collect(value: &Value, points: &mut Vec<[Option<f64>; 3]>) {
+    match value {
+        Value::Array(list) if list.first().is_some_and(|first| !first.is_array() && !first.is_object()) => {
+            points.push([0, 1, 2].map(|k| list.get(k).and_then(Value::as_f64)));
+        }
+        Value::Array(list) => list.iter().for_each(|value| collect(value, points)),
+        Value::Object(_) if ["Point", "MultiPoint"].contains(&type_of(value)) => {}
+        Value::Object(object) => {
+            ["features", "geometries", "geometry", "coordinates"]
+                .into_iter()
+                .filter_map(|name| object.get(name))
+                .for_each(|value| collect(value, points));
+        }
+        _ => {}
+    }
+}
+
+/// The coordinate reference system that a file names, as before RFC 7946.
+fn declared(document: &Document) -> Option<Declared> {
+    let key = Key::root().field("crs");
+    let properties = document.value.get("crs")?.get("properties")?;
+    let text = match (properties.get("name"), properties.get("code")) {
+        (Some(Value::String(name)), _) => name.clone(),
+        (_, Some(code)) => format!("EPSG:{code}"),
+        _ => return None,
+    };
+    Some(Declared { text, line: document.lines.line(key.as_str()), key: key.to_string() })
+}
+
+/// Members of a feature that are read, or that the format has beside them.
+const MEMBERS: [&str; 6] = ["type", "geometry", "properties", "id", "bbox", "crs"];
+
+/// Law and layer of a feature, each with its key.
+#[derive(Debug, Default)]
+struct Said {
+    law: Option<(String, String)>,
+    layer: Option<(String, String)>,
+}
 
 /// Reader with the geometry found so far.
 struct Reader<'a> {
     document: &'a Document<'a>,
+    laws: &'a Laws<'a>,
+    plane: Plane,
     geometry: Geometry,
     high: usize,
     unused: BTreeMap<String, usize>,
+    /// Properties that are not read, by name.
+    properties: BTreeMap<String, usize>,
 }
 
 impl Reader<'_> {
-    fn object(&mut self, key: &Key, value: &Value, law: &Law) -> Result<(), CaseError> {
+    fn object(&mut self, key: &Key, value: &Value, said: &Said) -> Result<(), CaseError> {
         match type_of(value) {
-            "FeatureCollection" => self.list(key, value, "features", law),
-            "GeometryCollection" => self.list(key, value, "geometries", law),
-            "Feature" => {
-                let law = self.law(key, value)?;
-                match value.get("geometry") {
-                    None | Some(Value::Null) => self.skip("Feature without geometry"),
-                    Some(geometry) => self.object(&key.field("geometry"), geometry, &law),
+            "FeatureCollection" => self.list(key, value, "features", said),
+            "GeometryCollection" => self.list(key, value, "geometries", said),
+            "Feature" => match value.get("geometry") {
+                None | Some(Value::Null) => self.skip("Feature without geometry"),
+                Some(geometry) => {
+                    let said = self.said(key, value)?;
+                    self.object(&key.field("geometry"), geometry, &said)
                 }
-            }
+            },
             kind @ ("Point" | "MultiPoint") => self.skip(kind),
-            kind if SHAPES.contains(&kind) => self.shape(key, value, kind, law),
+            kind if SHAPES.contains(&kind) => self.shape(key, value, kind, said),
             _ => {
                 // An object at the root that has another type may be any file, such as a key to an account.
                 let is_ours = *key != Key::root();
@@ -81,24 +142,43 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn list(&mut self, key: &Key, value: &Value, name: &str, law: &Law) -> Result<(), CaseError> {
+    fn list(&mut self, key: &Key, value: &Value, name: &str, said: &Said) -> Result<(), CaseError> {
         let key = key.field(name);
         let objects = self.document.elements(&key, value.get(name).unwrap_or(&Value::Null))?;
-        objects.iter().try_for_each(|(key, value)| self.object(key, value, law))
+        objects.iter().try_for_each(|(key, value)| self.object(key, value, said))
     }
 
-    fn law(&self, key: &Key, feature: &Value) -> Result<Law, CaseError> {
-        let key = key.field("properties").field("law");
-        match feature.get("properties").and_then(|properties| properties.get("law")) {
-            None | Some(Value::Null) => Ok(None),
-            Some(Value::String(law)) => Ok(Some((law.clone(), key.to_string()))),
-            Some(other) => self
-                .document
-                .fail(&key, format!("is {}, must be a string; write the name of a joint law", shown(other))),
+    /// What the properties of a feature say of it; those that are not read are counted.
+    fn said(&mut self, key: &Key, feature: &Value) -> Result<Said, CaseError> {
+        let mut said = Said::default();
+        let members = feature.as_object().into_iter().flatten();
+        for (name, _) in members.filter(|(name, value)| !MEMBERS.contains(&name.as_str()) && !value.is_null()) {
+            *self.properties.entry(format!("{name:?} beside \"properties\"")).or_default() += 1;
         }
+        let key = key.field("properties");
+        let properties = feature.get("properties").and_then(Value::as_object).into_iter().flatten();
+        for (name, value) in properties.filter(|(_, value)| !value.is_null()) {
+            let key = key.field(name);
+            match (Purpose::named(name), value) {
+                (Some(Purpose::Law), _) if said.law.is_some() => {
+                    return self.document.fail(&key, "is a second name of the joint law; remove one of both");
+                }
+                (Some(_), Value::String(name)) if name.trim().is_empty() => {}
+                (Some(Purpose::Law), Value::String(law)) => said.law = Some((law.clone(), key.to_string())),
+                (Some(Purpose::Law), other) => {
+                    let message = format!("is {}, must be a string; write the name of a joint law", shown(other));
+                    return self.document.fail(&key, message);
+                }
+                (Some(Purpose::Layer), Value::String(layer)) if said.layer.is_none() => {
+                    said.layer = Some((layer.clone(), key.to_string()));
+                }
+                _ => *self.properties.entry(name.clone()).or_default() += 1,
+            }
+        }
+        Ok(said)
     }
 
-    fn shape(&mut self, key: &Key, value: &Value, kind: &str, law: &Law) -> Result<(), CaseError> {
+    fn shape(&mut self, key: &Key, value: &Value, kind: &str, said: &Said) -> Result<(), CaseError> {
         let key = key.field("coordinates");
         let coordinates = value.get("coordinates").unwrap_or(&Value::Null);
         let parts = match kind {
@@ -107,38 +187,33 @@ impl Reader<'_> {
         };
         for (key, part) in &parts {
             if kind.ends_with("LineString") {
-                let points = self.points(key, part)?;
-                self.geometry.traces.push(Trace { points, law: law.clone() });
+                let (points, at) = self.points(key, part)?;
+                let part = Part::of(said.law.clone(), said.layer.clone(), self.laws);
+                let put = self.geometry.put_line(&part, points, at);
+                put.or_else(|message| self.document.fail(key, message))?;
             } else {
-                self.polygon(key, part)?;
+                self.polygon(key, part, said)?;
             }
         }
         Ok(())
     }
 
-    fn polygon(&mut self, key: &Key, value: &Value) -> Result<(), CaseError> {
+    fn polygon(&mut self, key: &Key, value: &Value, said: &Said) -> Result<(), CaseError> {
         let rings = self.document.elements(key, value)?;
         if rings.is_empty() {
             return self.document.fail(key, "has no rings, a polygon needs at least 1; add one or remove the polygon");
         }
-        for (i, (key, ring)) in rings.iter().enumerate() {
-            let (mut points, key) = self.points(key, ring)?;
-            if points.len() > 1 && points.first() == points.last() {
-                points.pop();
-            }
-            if i > 0 {
-                self.geometry.holes.push((points, key));
-            } else if self.geometry.outline.is_none() {
-                self.geometry.outline = Some((points, key));
-            } else {
-                self.geometry.islands.push((points, key));
-            }
+        let rings = rings.iter().map(|(key, ring)| self.points(key, ring)).collect::<Result<Vec<Located>, _>>()?;
+        let name = said.law.as_ref().or(said.layer.as_ref()).map(|(name, _)| name.as_str());
+        let kind = name.and_then(Ring::named);
+        if said.law.is_some() && kind.is_none() {
+            *self.properties.entry("law of a polygon".to_owned()).or_default() += 1;
         }
-        Ok(())
+        self.geometry.put_polygon(kind, rings).or_else(|message| self.document.fail(key, message))
     }
 
     fn points(&mut self, key: &Key, value: &Value) -> Result<Located, CaseError> {
-        let (points, high) = self.document.points(key, value)?;
+        let (points, high) = self.document.points(key, value, self.plane)?;
         self.high += high;
         Ok((points, key.to_string()))
     }

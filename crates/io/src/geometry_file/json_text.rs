@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
+use super::upright::Plane;
 use crate::case_error::CaseError;
 use crate::lines::{LineMap, LineStarts};
 use enmm::model::case::PointList;
@@ -25,6 +26,8 @@ impl<'a> Document<'a> {
     /// # Errors
     /// A bare `NaN` or `Infinity` stands in it, a key stands twice in one object, or it is not JSON.
     pub fn parse(file: &'a str, text: &str) -> Result<Self, CaseError> {
+        let whole = one_value(text);
+        let text = whole.as_deref().unwrap_or(text);
         let mut scan = Scan { starts: LineStarts::new(text), lines: LineMap::default(), open: Vec::new() };
         let refused = scan.run(text);
         let mut document = Self { file, lines: scan.lines, value: Value::Null };
@@ -56,12 +59,11 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Returns the points of an array of coordinates, and how many had more than two coordinates (the rest is not
-    /// used).
+    /// Returns the points of an array of coordinates in a plane, and how many had more than two coordinates.
     ///
     /// # Errors
     /// The first value that is no point.
-    pub fn points(&self, key: &Key, value: &Value) -> Result<(PointList, usize), CaseError> {
+    pub fn points(&self, key: &Key, value: &Value, plane: Plane) -> Result<(PointList, usize), CaseError> {
         let list = self.elements(key, value)?;
         let mut points = Vec::with_capacity(list.len());
         let mut high = 0;
@@ -70,7 +72,9 @@ impl<'a> Document<'a> {
             let [x, y, rest @ ..] = coordinates.as_slice() else {
                 return self.fail(key, format!("has {} coordinates, must have 2; write `[x, y]`", coordinates.len()));
             };
-            points.push([self.coordinate(x)?, self.coordinate(y)?]);
+            let height = rest.first().filter(|_| plane != Plane::Flat);
+            let z = height.map_or(Ok(0.0), |z| self.coordinate(z))?;
+            points.push(plane.point([self.coordinate(x)?, self.coordinate(y)?, z]));
             high += usize::from(!rest.is_empty());
         }
         Ok((points, high))
@@ -87,6 +91,25 @@ impl<'a> Document<'a> {
             None => self.fail(key, format!("is {}, must be a number; write `1.0`", shown(value))),
         }
     }
+}
+
+/// Sign before each value of a sequence (RFC 8142).
+const RECORD: char = '\u{1e}';
+
+/// Values one after the other, such as a feature a line (RFC 8142 and newline-delimited GeoJSON), as one collection on
+/// the same lines; none where the text is one value, or no JSON.
+fn one_value(text: &str) -> Option<String> {
+    let plain = if text.contains(RECORD) { text.replace(RECORD, " ") } else { text.to_owned() };
+    let mut values = serde_json::Deserializer::from_str(&plain).into_iter::<serde::de::IgnoredAny>();
+    let mut whole = String::from("{\"type\": \"FeatureCollection\", \"features\": [");
+    let (mut from, mut count) = (0, 0);
+    while let Some(value) = values.next() {
+        value.ok()?;
+        whole += if count == 0 { "" } else { "," };
+        whole += &plain[from..values.byte_offset()];
+        (from, count) = (values.byte_offset(), count + 1);
+    }
+    (count > 1 || count == 1 && plain != text).then(|| whole + "]}")
 }
 
 /// Longest text of a value that is quoted in a message (characters).

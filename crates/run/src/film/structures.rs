@@ -72,14 +72,9 @@ fn support_frames(simulation: &Simulation) -> Vec<SupportFrame> {
 
 /// Free lengths of the bolts of a model, in the order of frames.
 pub fn bolt_places(simulation: &Simulation) -> Vec<BoltPlace> {
-    let of_case = &simulation.case().bolts;
     let place = |line: &BoltLine| {
         let bolt = line.bolt as usize;
-        let name = of_case.get(bolt).and_then(|bolt| bolt.name.clone());
-        BoltPlace {
-            name: name.unwrap_or_else(|| format!("bolt {bolt}")),
-            ends: line.reference.map(|point| [point.x, point.y]),
-        }
+        BoltPlace { name: simulation.case().bolt_name(bolt), ends: line.reference.map(|point| [point.x, point.y]) }
     };
     bolts(simulation).iter().map(place).collect()
 }

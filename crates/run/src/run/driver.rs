@@ -8,6 +8,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::blocks::write_blocks;
+use crate::check::count_of_notes;
 use crate::film::{Film, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
@@ -190,8 +191,8 @@ impl<'a> Driver<'a> {
         }
         let mut warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
         warnings.extend(past.and_then(|past| lost_past(past, &simulation, directory)));
-        simulation.built().notes.iter().for_each(|note| observer.note(note));
         warnings.iter().for_each(|warning| observer.warn(warning));
+        count_of_notes(simulation.built().notes.len()).iter().for_each(|note| observer.note(note));
         let (history, frames) = writers(&simulation, directory, resumed).map_err(RunError::Directory)?;
         let film = film(loaded, &simulation, directory, resumed, &warnings).map_err(RunError::Directory)?;
         let progress = good.progress.clone();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use enmm::cosimulation::Saved;
-use enmm::model::bytes;
+use enmm::model::bytes::{self, Keeper};
 use serde::{Deserialize, Serialize};
 
 use crate::log::Status;
@@ -174,7 +174,7 @@ impl Instance {
         let token = &self.table.token;
         let entry = self.states.entry(number)?;
         if entry.bytes.is_none() {
-            entry.bytes = Some(bytes::encode(&entry.state, token).map_err(|error| error.to_string())?);
+            entry.bytes = Some(bytes::encode(Keeper::Fmu, &entry.state, token).map_err(|error| error.to_string())?);
         }
         Ok(())
     }
@@ -186,7 +186,7 @@ impl Instance {
     pub fn deserialize_state(&mut self, bytes: &[u8], number: Option<usize>) -> Result<usize, Status> {
         let legal = self.allow(Call::State);
         let outcome = legal.and_then(|()| {
-            let decoded = bytes::decode(bytes, &self.table.token);
+            let decoded = bytes::decode(Keeper::Fmu, bytes, &self.table.token);
             let mut state: Whole = decoded.map_err(|error| format!("these bytes are no state of this FMU: {error}"))?;
             self.check_all(&mut state)?;
             self.states.put(number, state)

@@ -7,7 +7,7 @@ pub const CHORDS_MAX: usize = 100_000;
 /// Least number of chords of a whole turn.
 const CHORDS_PER_TURN: f64 = 8.0;
 /// Most halvings of a piece of a spline.
-const HALVINGS_MAX: u32 = 24;
+pub const HALVINGS_MAX: u32 = 24;
 
 /// The points centre + u·cos t + v·sin t between two angles (radians).
 #[derive(Debug, Clone, Copy)]
@@ -84,7 +84,7 @@ pub struct Spline {
 }
 
 /// A point times its weight, and the weight.
-type Weighted = [f64; 3];
+pub type Weighted = [f64; 3];
 
 impl Spline {
     /// Corners of the polyline on the mapped spline, both ends among them; none if it needs more than [`CHORDS_MAX`].
@@ -135,7 +135,7 @@ fn flat([x, y, weight]: &Weighted) -> [f64; 2] {
 }
 
 /// Adds the end of a piece, after those of its halves where it leaves its chord: it lies within the hull of its points.
-fn halve(piece: &[Weighted], tolerance: f64, left: u32, corners: &mut Vec<[f64; 2]>) -> Option<()> {
+pub fn halve(piece: &[Weighted], tolerance: f64, left: u32, corners: &mut Vec<[f64; 2]>) -> Option<()> {
     let (a, b) = (flat(&piece[0]), flat(piece.last()?));
     if piece.iter().all(|point| distance(flat(point), a, b) <= tolerance) {
         corners.push(b);

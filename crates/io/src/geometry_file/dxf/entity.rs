@@ -1,10 +1,12 @@
 //! Points of the entities of a DXF drawing that are lines or curves.
 
 use super::curve::{Arc, CHORDS_MAX, Spline};
+use super::fit::FitSpline;
 use super::groups::{Group, Groups};
 use super::records::{Record, find};
 use crate::case_error::CaseError;
 use crate::geometry_file::affine::Affine;
+use crate::geometry_file::upright::Plane;
 use enmm::model::case::PointList;
 
 /// Points of an entity.
@@ -20,6 +22,8 @@ pub struct Shape {
     pub high: usize,
     /// How many arcs and splines have become polylines.
     pub curves: usize,
+    /// How many of these go through points to be fitted.
+    pub fitted: usize,
 }
 
 /// Content of an entity.
@@ -69,15 +73,17 @@ const REMARKS: [&str; 31] = [
 ];
 
 /// Flags of a POLYLINE and of its vertices.
-const POLYLINE_3D: i64 = 8;
+pub const POLYLINE_3D: i64 = 8;
 const MESH: i64 = 16;
 const FACES: i64 = 64;
 const CONTROL_POINT: i64 = 16;
 /// Codes of coordinates: of points and starts, of ends.
-const POINT: [i32; 3] = [10, 20, 30];
-const END: [i32; 3] = [11, 21, 31];
+pub const POINT: [i32; 3] = [10, 20, 30];
+pub const END: [i32; 3] = [11, 21, 31];
+/// Codes of the directions in which a spline through points to be fitted begins and ends.
+const TANGENTS: [[i32; 3]; 2] = [[12, 22, 32], [13, 23, 33]];
 /// Code of the height of all points of an LWPOLYLINE, and of bulges.
-const ELEVATION: i32 = 38;
+pub const ELEVATION: i32 = 38;
 const BULGE: i32 = 42;
 /// Greatest slope of an extrusion direction that still counts as upright.
 const UPRIGHT: f64 = 1e-6;
@@ -90,6 +96,8 @@ pub struct Tracer<'a> {
     pub groups: &'a Groups<'a>,
     /// From the coordinates that the entity has to the section.
     pub map: Affine,
+    /// Plane of the drawing that is the section.
+    pub plane: Plane,
     /// Distance (m) within which curves become polylines.
     pub tolerance: f64,
 }
@@ -107,7 +115,7 @@ impl Tracer<'_> {
             "LINE" => {
                 shape.closed = false;
                 for codes in [POINT, END] {
-                    let point = self.coordinates(record, record.groups, codes, &mut shape)?;
+                    let point = self.position(record, record.groups, codes, &mut shape)?;
                     shape.push(self.map.point(point), line_of(record, record.groups, codes[0]));
                 }
             }
@@ -128,13 +136,16 @@ impl Tracer<'_> {
             kind if REMARKS.contains(&kind) => return Ok(Content::Remark),
             _ => return Ok(Content::Other),
         }
+        if self.plane != Plane::Flat {
+            shape.high = 0;
+        }
         Ok(Content::Line(shape))
     }
 
     fn light_polyline(&self, record: &Record, shape: &mut Shape) -> Result<(), CaseError> {
         let first = record.groups.iter().position(|group| group.code == POINT[0]).unwrap_or(record.groups.len());
         let vertices: Vec<&[Group]> = record.groups[first..].chunk_by(|_, next| next.code != POINT[0]).collect();
-        self.corners(record, &vertices, &self.facing(record)?, shape)?;
+        self.corners(record, &vertices, Some(&self.facing(record)?), shape)?;
         if record.number_or(self.groups, ELEVATION, 0.0)? != 0.0 {
             shape.high = vertices.len();
         }
@@ -149,21 +160,25 @@ impl Tracer<'_> {
                 vertices.push(*vertex);
             }
         }
-        let map = if flags & POLYLINE_3D != 0 { self.map } else { self.facing(record)? };
-        self.corners(record, &vertices, &map, shape)
+        let own = if flags & POLYLINE_3D != 0 { None } else { Some(self.facing(record)?) };
+        self.corners(record, &vertices, own.as_ref(), shape)
     }
 
-    /// Adds vertices and the arcs between them.
+    /// Adds vertices and the arcs between them, in space or in a plane of the entity's own with its map.
     fn corners(
         &self,
         record: &Record,
         vertices: &[&[Group]],
-        map: &Affine,
+        own: Option<&Affine>,
         shape: &mut Shape,
     ) -> Result<(), CaseError> {
+        let map = own.unwrap_or(&self.map);
         let mut corners = Vec::with_capacity(vertices.len());
         for vertex in vertices {
-            let point = self.coordinates(record, vertex, POINT, shape)?;
+            let point = match own {
+                Some(_) => self.coordinates(record, vertex, POINT, shape)?,
+                None => self.position(record, vertex, POINT, shape)?,
+            };
             let bulge = find(vertex, BULGE).map_or(Ok(0.0), |group| self.groups.number(group))?;
             if !bulge.is_finite() {
                 let message = format!("{} has the bulge {bulge}, must be a finite number; correct it", record.kind);
@@ -184,8 +199,8 @@ impl Tracer<'_> {
     }
 
     fn ellipse(&self, record: &Record, shape: &mut Shape) -> Result<(), CaseError> {
-        let centre = self.coordinates(record, record.groups, POINT, shape)?;
-        let u = self.coordinates(record, record.groups, END, &mut Shape::default())?;
+        let centre = self.position(record, record.groups, POINT, shape)?;
+        let u = self.position(record, record.groups, END, &mut Shape::default())?;
         let ratio = self.positive(record, 40)? * self.side(record)?;
         let span = [record.number_or(self.groups, 41, 0.0)?, record.number_or(self.groups, 42, std::f64::consts::TAU)?];
         let turn = (span[1] - span[0]).rem_euclid(std::f64::consts::TAU);
@@ -206,8 +221,14 @@ impl Tracer<'_> {
     }
 
     fn spline(&self, record: &Record, flags: i64, shape: &mut Shape) -> Result<(), CaseError> {
-        let spline = self.spline_of(record, shape)?;
-        let points = self.chords(record, spline.corners(&self.map, self.tolerance))?;
+        let corners = match self.fit_points(record, shape)? {
+            fit if fit.points.is_empty() => self.spline_of(record, shape)?.corners(&self.map, self.tolerance),
+            fit => {
+                shape.fitted = 1;
+                FitSpline { closed: flags & 1 != 0, ..fit }.corners(&self.map, self.tolerance)
+            }
+        };
+        let points = self.chords(record, corners)?;
         shape.curves = 1;
         points.into_iter().for_each(|point| shape.push(point, record.line));
         // A closed spline ends where it begins, but for rounding; one that only looks closed stays open.
@@ -222,6 +243,30 @@ impl Tracer<'_> {
         Ok(())
     }
 
+    /// Points to be fitted, where a spline has no control points.
+    fn fit_points(&self, record: &Record, shape: &mut Shape) -> Result<FitSpline, CaseError> {
+        let mut fit = FitSpline::default();
+        if record.find(POINT[0]).is_some() {
+            return Ok(fit);
+        }
+        let starts = record.groups.iter().enumerate().filter(|(_, group)| group.code == END[0]).map(|(k, _)| k);
+        for start in starts {
+            let point = self.position(record, &record.groups[start..], END, shape)?;
+            if fit.points.last() != Some(&point) {
+                fit.points.push(point);
+            }
+        }
+        for (tangent, codes) in fit.tangents.iter_mut().zip(TANGENTS) {
+            if record.find(codes[0]).is_some() {
+                *tangent = Some(self.position(record, record.groups, codes, &mut Shape::default())?);
+            }
+        }
+        if fit.points.len() < 2 {
+            fit.points.clear();
+        }
+        Ok(fit)
+    }
+
     fn spline_of(&self, record: &Record, shape: &mut Shape) -> Result<Spline, CaseError> {
         let mut spline =
             Spline { degree: usize::try_from(record.whole(self.groups, 71)?).unwrap_or(0), ..Spline::default() };
@@ -231,7 +276,7 @@ impl Tracer<'_> {
         (spline.knots, spline.weights) = (numbers(40)?, numbers(41)?);
         let starts = record.groups.iter().enumerate().filter(|(_, group)| group.code == POINT[0]).map(|(k, _)| k);
         for start in starts {
-            spline.points.push(self.coordinates(record, &record.groups[start..], POINT, shape)?);
+            spline.points.push(self.position(record, &record.groups[start..], POINT, shape)?);
         }
         if spline.weights.is_empty() {
             spline.weights = vec![1.0; spline.points.len()];
@@ -240,7 +285,7 @@ impl Tracer<'_> {
         let sorted = spline.knots.windows(2).all(|pair| pair[0] <= pair[1]);
         let finite = spline.knots.iter().all(|knot| knot.is_finite()) && sorted;
         let problem = if count == 0 {
-            "has no control points, only points to be fitted; convert it to a polyline".to_string()
+            "has neither control points nor two points to be fitted".to_string()
         } else if !(1..=DEGREE_MAX).contains(&p) || count <= p {
             format!("has {count} control points and the degree {p}, must be more than the degree, 1 to {DEGREE_MAX}")
         } else if spline.knots.len() != count + p + 1 || !finite || spline.knots[p] >= spline.knots[count] {
@@ -266,6 +311,19 @@ impl Tracer<'_> {
             },
             Ok,
         )
+    }
+
+    /// Reads a point in space, as one of the section.
+    fn position(
+        &self,
+        record: &Record,
+        pairs: &[Group],
+        codes: [i32; 3],
+        shape: &mut Shape,
+    ) -> Result<[f64; 2], CaseError> {
+        let [x, y] = self.coordinates(record, pairs, codes, shape)?;
+        let z = find(pairs, codes[2]).map_or(Ok(0.0), |height| self.groups.number(height))?;
+        Ok(self.plane.point([x, y, z]))
     }
 
     /// Reads x and y, and counts a height.
@@ -306,20 +364,36 @@ impl Tracer<'_> {
         Ok(if side < 0.0 { self.map.after(&Affine::scaling([-1.0, 1.0])) } else { self.map })
     }
 
-    /// 1 if the entity is drawn as seen from above, -1 from below.
+    /// 1 if the entity is drawn as the section is seen, -1 from behind.
     fn side(&self, record: &Record) -> Result<f64, CaseError> {
-        let mut normal = [0.0, 0.0, 1.0];
-        for (axis, value) in normal.iter_mut().enumerate() {
-            *value = record.number_or(self.groups, 210 + 10 * axis as i32, *value)?;
-        }
-        if normal[0].abs() <= UPRIGHT && normal[1].abs() <= UPRIGHT && normal[2] != 0.0 {
-            return Ok(normal[2].signum());
+        let normal = normal(|code| record.find(code).map(|group| self.groups.number(group)).transpose())?;
+        let (axis, towards) = self.plane.towards();
+        let off = (0..3).filter(|k| *k != axis).all(|k| normal[k].abs() <= UPRIGHT);
+        if off && normal[axis] != 0.0 {
+            return Ok(towards * normal[axis].signum());
         }
         let [a, b, c] = normal;
-        let line = [210, 220, 230].iter().find_map(|&code| record.find(code)).map_or(record.line, |group| group.line);
-        let message = format!("{} is not in the x-y plane (extrusion {a}, {b}, {c})", record.kind);
+        let line = EXTRUSION.iter().find_map(|&code| record.find(code)).map_or(record.line, |group| group.line);
+        let plane = if self.plane == Plane::Flat { "x-y plane" } else { "upright plane of the others" };
+        let message = format!("{} is not in the {plane} (extrusion {a}, {b}, {c})", record.kind);
         self.groups.syntax(line, message + "; draw it seen from above, or turn the drawing into the x-y plane")
     }
+}
+
+/// Codes of the extrusion direction of an entity, and what it is without.
+const EXTRUSION: [i32; 3] = [210, 220, 230];
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// The extrusion direction of an entity, by a reader of numbers.
+///
+/// # Errors
+/// Those of the reader.
+pub fn normal<E>(mut number: impl FnMut(i32) -> Result<Option<f64>, E>) -> Result<[f64; 3], E> {
+    let mut normal = UP;
+    for (value, code) in normal.iter_mut().zip(EXTRUSION) {
+        *value = number(code)?.unwrap_or(*value);
+    }
+    Ok(normal)
 }
 
 /// Line of the pair with a code, else of the entity.

@@ -5,6 +5,7 @@ use super::groups::Groups;
 use super::records::{Block, Blocks, Record, find};
 use crate::case_error::CaseError;
 use crate::geometry_file::affine::Affine;
+use crate::geometry_file::upright::Plane;
 
 /// Most entities of a drawing with all that it inserts.
 const ENTITIES_MAX: usize = 1_000_000;
@@ -117,7 +118,7 @@ impl<'a> Inserter<'a> {
         let number = |code, default| record.number_or(groups, code, default);
         let base = |code| find(block.head, code).map_or(Ok(0.0), |group| groups.number(group));
         let base = Affine::shift([-base(10)?, -base(20)?]);
-        let facing = Tracer { groups, map: *map, tolerance: 0.0 }.facing(record)?;
+        let facing = Tracer { groups, map: *map, plane: Plane::Flat, tolerance: 0.0 }.facing(record)?;
         let turn = Affine::rotation(number(50, 0.0)?);
         let shape = turn.after(&Affine::scaling([number(41, 1.0)?, number(42, 1.0)?])).after(&base);
         if shape.is_flat() {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::LOOPS;
 use super::inserts::Placed;
 use crate::geometry_file::Fault;
+use crate::geometry_file::names::{Laws, Ring};
 use enmm::model::Case;
 use enmm::model::case::key::{Key, nearest};
 use enmm::model::case::{Invalid, Layer, LayerUse};
@@ -17,8 +17,8 @@ const NAMED: usize = 40;
 /// Place of the lines of a layer in the section.
 #[derive(Debug, Clone)]
 pub enum Target<'a> {
-    /// A loop, by its place in [`LOOPS`].
-    Loop(usize),
+    /// A loop.
+    Loop(Ring),
     /// Joints, of this law or the default one.
     Joint {
         /// Law by name.
@@ -88,17 +88,17 @@ impl<'a> Layers<'a> {
     /// The layer of bolts names none.
     pub fn target(&self, layer: &str) -> Result<Target<'a>, Fault> {
         if self.case.layers.is_empty() {
-            if let Some(which) = LOOPS.iter().position(|name| layer.eq_ignore_ascii_case(name)) {
-                return Ok(Target::Loop(which));
+            if let Some(ring) = Ring::named(layer) {
+                return Ok(Target::Loop(ring));
             }
-            let law = self.case.joint_laws.contains_key(layer).then(|| layer.to_string());
+            let law = Laws::Of(self.case).of_layer(layer);
             return Ok(Target::Joint { is_known: law.is_some(), law });
         }
         let Some(rule) = self.rule(layer) else { return Ok(Target::Ignore) };
         Ok(match rule.role {
-            LayerUse::Outline => Target::Loop(0),
-            LayerUse::Hole => Target::Loop(1),
-            LayerUse::Island => Target::Loop(2),
+            LayerUse::Outline => Target::Loop(Ring::Outline),
+            LayerUse::Hole => Target::Loop(Ring::Hole),
+            LayerUse::Island => Target::Loop(Ring::Island),
             LayerUse::Joint => Target::Joint { law: rule.law.clone(), is_known: true },
             LayerUse::Water => Target::Water,
             LayerUse::Bolt => Target::Bolt(rule.bolt.as_deref().unwrap_or_default()),

@@ -8,10 +8,12 @@
 mod chain;
 mod curve;
 mod entity;
+mod fit;
 mod groups;
 mod inserts;
 mod layers;
 mod records;
+mod space;
 mod survey;
 mod units;
 
@@ -23,16 +25,16 @@ use self::groups::Groups;
 use self::inserts::{Inserter, Placed};
 use self::layers::{Layers, Target};
 use super::affine::Affine;
-use super::{Fault, Geometry, Trace};
+use super::names::Ring;
+use super::unit::Unit;
+use super::upright::Plane;
+use super::{Fault, Geometry, Trace, lawless};
 use crate::case_error::CaseError;
 use enmm::model::Case;
 use enmm::model::case::key::Key;
 use enmm::model::case::{CURVE_TOLERANCE, PointList, Transform};
 
-pub use self::survey::{LayerSurvey, Survey, survey};
-
-/// Names of the loops, which are also their layers where a case names none, in any letter case.
-const LOOPS: [&str; 3] = ["outline", "hole", "island"];
+pub use self::survey::survey;
 
 /// Name of entities in keys.
 const ENTITY: &str = "entity";
@@ -48,17 +50,21 @@ pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, Fault> {
     let sheet = sheet(&groups, &blocks, &entities, case.transform.as_ref())?;
     let layers = Layers::new(case, &sheet.placed)?;
     let tolerance = case.domain.curve_tolerance.unwrap_or(CURVE_TOLERANCE * case.mesh.size);
+    let plane = space::plane(&sheet.placed, |layer| !matches!(layers.target(layer), Ok(Target::Ignore)));
+    let notes = sheet.notes.into_iter().chain(plane.note()).collect();
     let mut reader = Reader {
         groups: &groups,
         layers,
+        plane,
         tolerance,
-        geometry: Geometry { notes: sheet.notes, ..Geometry::default() },
+        geometry: Geometry { notes, unit: sheet.unit.text, ..Geometry::default() },
         notes: BTreeMap::new(),
         lawless: BTreeMap::new(),
         closed: BTreeMap::new(),
         open: [const { Vec::new() }; 3],
         snap_tolerance: case.domain.snap_tolerance,
         curves: 0,
+        fitted: 0,
     };
     for (i, placed) in sheet.placed.iter().enumerate() {
         reader.entity(&Key::root().field(ENTITY).index(i), placed)?;
@@ -73,6 +79,7 @@ pub fn parse(file: &str, text: &str, case: &Case) -> Result<Geometry, Fault> {
 /// All entities of model space at their places.
 struct Sheet<'a> {
     placed: Vec<Placed<'a>>,
+    unit: Unit,
     notes: Vec<String>,
 }
 
@@ -82,23 +89,25 @@ fn sheet<'a>(
     entities: &'a [records::Record<'a>],
     transform: Option<&Transform>,
 ) -> Result<Sheet<'a>, CaseError> {
-    let (unit, note) = units::metres(groups, transform.and_then(|transform| transform.scale))?;
+    let unit = units::unit(groups, transform.and_then(|transform| transform.scale))?;
     let mut inserter = Inserter::new(groups, blocks);
-    inserter.place(entities, &Affine::of_case(transform, unit), None)?;
+    inserter.place(entities, &Affine::of_case(transform, unit.metres), None)?;
     let paper = inserter.paper;
     let paper = (paper > 0).then(|| format!("{paper} entities on paper space are not used"));
-    Ok(Sheet { placed: inserter.finish(), notes: note.into_iter().chain(paper).collect() })
+    let notes = unit.note.clone().into_iter().chain(paper).collect();
+    Ok(Sheet { placed: inserter.finish(), unit, notes })
 }
 
 /// Reader with what was found so far.
 struct Reader<'a> {
     groups: &'a Groups<'a>,
     layers: Layers<'a>,
+    plane: Plane,
     tolerance: f64,
     geometry: Geometry,
     /// Things that were not used or changed, with counts.
     notes: BTreeMap<String, usize>,
-    /// Traces without a law of their own, by what to say of them.
+    /// Traces without a law of their own, by layer.
     lawless: BTreeMap<String, usize>,
     /// Closed lines by their layers.
     closed: BTreeMap<String, usize>,
@@ -106,6 +115,7 @@ struct Reader<'a> {
     open: [Vec<Piece>; 3],
     snap_tolerance: Option<f64>,
     curves: usize,
+    fitted: usize,
 }
 
 impl Reader<'_> {
@@ -117,7 +127,7 @@ impl Reader<'_> {
             self.note(format!("{} on layer {layer:?}, which is ignored", record.kind), 1);
             return Ok(());
         }
-        let tracer = Tracer { groups: self.groups, map: placed.map, tolerance: self.tolerance };
+        let tracer = Tracer { groups: self.groups, map: placed.map, plane: self.plane, tolerance: self.tolerance };
         let shape = match tracer.content(record)? {
             Content::Line(shape) => shape,
             Content::Remark => {
@@ -137,6 +147,7 @@ impl Reader<'_> {
         self.geometry.lines.push(ENTITY, record.line, &shape.lines);
         self.note("points whose height is not used".to_string(), shape.high);
         self.curves += shape.curves;
+        self.fitted += shape.fitted;
         if shape.closed {
             *self.closed.entry(layer.to_string()).or_default() += 1;
         }
@@ -144,8 +155,7 @@ impl Reader<'_> {
             Target::Loop(which) => Ok(self.ring(which, key, placed, shape)?),
             Target::Joint { law, is_known } => {
                 if !is_known {
-                    let warning = format!("traces on layer {layer:?}, which is no joint law, take the default law");
-                    *self.lawless.entry(warning).or_default() += 1;
+                    *self.lawless.entry(layer.to_owned()).or_default() += 1;
                 }
                 self.trace(key, shape, law);
                 Ok(())
@@ -162,12 +172,12 @@ impl Reader<'_> {
         }
     }
 
-    fn ring(&mut self, which: usize, key: &Key, placed: &Placed, mut shape: Shape) -> Result<(), CaseError> {
+    fn ring(&mut self, which: Ring, key: &Key, placed: &Placed, mut shape: Shape) -> Result<(), CaseError> {
         let (kind, line) = (placed.record.kind, placed.record.line);
         let meets = shape.points.len() > 1 && shape.points.first() == shape.points.last();
         if !shape.closed && !meets {
             let kind = format!("{kind} on layer {:?}", placed.layer);
-            self.open[which].push(Piece { points: shape.points, key: key.to_string(), line, kind });
+            self.open[which as usize].push(Piece { points: shape.points, key: key.to_string(), line, kind });
             return Ok(());
         }
         if meets {
@@ -178,8 +188,8 @@ impl Reader<'_> {
 
     /// Joins the open lines of each kind of loop.
     fn join(&mut self) -> Result<(), CaseError> {
-        for which in 0..LOOPS.len() {
-            let pieces = std::mem::take(&mut self.open[which]);
+        for which in Ring::ALL {
+            let pieces = std::mem::take(&mut self.open[which as usize]);
             let Some(Piece { key, line, kind, .. }) = pieces.get(chain::PIECES_MAX) else {
                 self.join_pieces(which, pieces)?;
                 continue;
@@ -190,7 +200,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn join_pieces(&mut self, which: usize, pieces: Vec<Piece>) -> Result<(), CaseError> {
+    fn join_pieces(&mut self, which: Ring, pieces: Vec<Piece>) -> Result<(), CaseError> {
         let points = || pieces.iter().flat_map(|piece| &piece.points);
         let size = points().flatten().fold(0.0f64, |most, value| most.max(value.abs()));
         let tolerance = self.snap_tolerance.unwrap_or(1e-6 * size);
@@ -209,19 +219,9 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn put_ring(&mut self, which: usize, key: &str, line: usize, points: PointList) -> Result<(), CaseError> {
-        let located = (points, key.to_string());
-        match which {
-            0 if self.geometry.outline.is_some() => {
-                let remedy = self.layers.remedy_of_second_outline();
-                let message = format!("is a second outline, there can be 1; {remedy}");
-                return Err(CaseError::at(self.groups.file, line, key, message));
-            }
-            0 => self.geometry.outline = Some(located),
-            1 => self.geometry.holes.push(located),
-            _ => self.geometry.islands.push(located),
-        }
-        Ok(())
+    fn put_ring(&mut self, which: Ring, key: &str, line: usize, points: PointList) -> Result<(), CaseError> {
+        let put = self.geometry.put_ring(which, (points, key.to_string()), self.layers.remedy_of_second_outline());
+        put.map_err(|message| CaseError::at(self.groups.file, line, key, message))
     }
 
     fn trace(&mut self, key: &Key, mut shape: Shape, law: Option<String>) {
@@ -264,15 +264,21 @@ impl Reader<'_> {
     }
 
     fn finish(self) -> Geometry {
-        let Self { mut geometry, notes, lawless, curves, tolerance, .. } = self;
+        let Self { mut geometry, notes, lawless: layers, curves, fitted, tolerance, .. } = self;
         if curves > 0 {
             let note = format!(
                 "{curves} arcs and splines are polylines within {tolerance} m of them (`domain.curve_tolerance`)"
             );
             geometry.notes.push(note);
         }
+        if fitted > 0 {
+            geometry.notes.push(format!(
+                "{fitted} splines have points to be fitted alone; they are drawn as cubics through these, by chord \
+                 length"
+            ));
+        }
         geometry.notes.extend(notes.iter().map(|(text, count)| format!("{count} {text}")));
-        geometry.warnings.extend(lawless.iter().map(|(text, count)| format!("{count} {text}")));
+        geometry.warnings.extend(layers.iter().map(|(layer, count)| lawless(layer, *count)));
         geometry
     }
 }

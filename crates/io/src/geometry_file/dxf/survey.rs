@@ -4,33 +4,9 @@ use std::collections::BTreeMap;
 
 use super::entity::{Content, Tracer};
 use super::groups::Groups;
-use super::{records, sheet};
+use super::{records, sheet, space};
 use crate::case_error::CaseError;
-use enmm::model::case::PointList;
-
-/// Layers of a drawing with their lines.
-#[derive(Debug, Default)]
-pub struct Survey {
-    /// Layers in the order of their names.
-    pub layers: Vec<LayerSurvey>,
-    /// Unit of the drawing, and parts that are not used.
-    pub notes: Vec<String>,
-}
-
-/// One layer.
-#[derive(Debug, Default)]
-pub struct LayerSurvey {
-    /// Name as the drawing writes it first.
-    pub name: String,
-    /// Number of entities by type.
-    pub counts: BTreeMap<String, usize>,
-    /// Closed lines (m).
-    pub loops: Vec<PointList>,
-    /// Open lines (m).
-    pub lines: Vec<PointList>,
-    /// Why entities cannot be read, the first of each type.
-    pub problems: BTreeMap<String, String>,
-}
+use crate::geometry_file::survey::{LayerSurvey, Survey};
 
 /// Looks at a drawing; curves are within `tolerance` (m).
 ///
@@ -41,6 +17,7 @@ pub fn survey(file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseErro
     let blocks = records::blocks(&groups)?;
     let entities = records::entities(&groups)?;
     let sheet = sheet(&groups, &blocks, &entities, None)?;
+    let plane = space::plane(&sheet.placed, |_| true);
     let mut layers: BTreeMap<String, LayerSurvey> = BTreeMap::new();
     for placed in &sheet.placed {
         let layer = layers.entry(placed.layer.to_lowercase()).or_default();
@@ -49,7 +26,7 @@ pub fn survey(file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseErro
         }
         let kind = placed.record.kind.to_string();
         *layer.counts.entry(kind.clone()).or_default() += 1;
-        let tracer = Tracer { groups: &groups, map: placed.map, tolerance };
+        let tracer = Tracer { groups: &groups, map: placed.map, plane, tolerance };
         let content = match tracer.content(placed.record) {
             Ok(content) => content,
             Err(error) => {
@@ -72,5 +49,6 @@ pub fn survey(file: &str, text: &str, tolerance: f64) -> Result<Survey, CaseErro
             }
         }
     }
-    Ok(Survey { layers: layers.into_values().collect(), notes: sheet.notes })
+    let notes = sheet.notes.into_iter().chain(plane.note()).collect();
+    Ok(Survey { layers: layers.into_values().collect(), is_drawing: true, unit: sheet.unit.text, notes })
 }

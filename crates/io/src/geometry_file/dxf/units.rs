@@ -2,6 +2,7 @@
 
 use super::groups::Groups;
 use crate::case_error::CaseError;
+use crate::geometry_file::unit::Unit;
 
 /// Metres in each unit and its name, by code; the first is none.
 const UNITS: [(f64, &str); 25] = [
@@ -35,19 +36,20 @@ const UNITS: [(f64, &str); 25] = [
 const NONE: usize = 0;
 const METRES: usize = 6;
 
-/// Returns the metres in a unit of a drawing, and a note where that is not sure or not 1.
+/// Returns the unit of a drawing, with a note where that is not sure.
 ///
 /// # Errors
 /// The code is no number, or that of no unit.
-pub fn metres(groups: &Groups, scale: Option<f64>) -> Result<(f64, Option<String>), CaseError> {
+pub fn unit(groups: &Groups, scale: Option<f64>) -> Result<Unit, CaseError> {
     let of_header = groups.all.iter().skip_while(|group| (group.code, group.value) != (9, "$INSUNITS")).nth(1);
     let (code, line) = match of_header.filter(|group| group.code == 70) {
         Some(group) => (group.value.parse().ok(), group.line),
         None => (Some(NONE), 1),
     };
+    let times = |metres: f64| scale.map_or(format!("times {metres}"), |s| format!("times {s} (`transform.scale`)"));
     let Some((code, (metres, name))) = code.and_then(|code: usize| Some((code, *UNITS.get(code)?))) else {
         if scale.is_some() {
-            return Ok((1.0, None));
+            return Ok(Unit { metres: 1.0, text: format!("no unit, taken {}", times(1.0)), note: None });
         }
         let message = format!("$INSUNITS is the code of no unit, 0 to {}; add `transform.scale`", UNITS.len() - 1);
         return groups.syntax(line, message);
@@ -67,5 +69,10 @@ pub fn metres(groups: &Groups, scale: Option<f64>) -> Result<(f64, Option<String
         ),
         (None, _) => Some(format!("$INSUNITS is {code} ({name}): coordinates are taken times {metres}")),
     };
-    Ok((metres, note))
+    let text = match (code, scale) {
+        (NONE, None) => "no unit, taken as metres".to_owned(),
+        (METRES, None) => format!("{name} ($INSUNITS is {code})"),
+        _ => format!("{name} ($INSUNITS is {code}), taken {}", times(metres)),
+    };
+    Ok(Unit { metres, text, note })
 }
