@@ -3,8 +3,8 @@
 
 use serde_json::Value;
 
-use crate::Case;
 use crate::key::Key;
+use crate::{Case, Output};
 
 /// A unit with the slips that people make in it: what a number was meant in, and by what it must be multiplied.
 struct Unit {
@@ -39,57 +39,57 @@ const fn row(keys: &'static [&'static str], unit: &'static Unit, range: [f64; 2]
 
 /// Magnitudes outside which a value is doubted; 0, which means "none" nearly everywhere, is not.
 const TABLE: &[Row] = &[
-    row(&["rock.*.density", "in_situ.density"], &DENSITY, [500.0, 1e4], "rock has 2000 to 3200"),
-    row(&["rock.*.young"], &PASCAL, [1e8, 5e11], "rock masses have 1e9 to 1e11"),
-    row(&["rock.*.cohesion"], &PASCAL, [500.0, 1e8], "soil has 1e3 to 1e5, rock masses 1e4 to 1e7"),
-    row(&["rock.*.tension"], &PASCAL, [100.0, 5e7], "rock has 1e4 to 2e7"),
-    row(&["rock.*.hoek_brown.sigma_ci"], &PASCAL, [5e5, 5e8], "rock has 5e6 to 3e8"),
-    row(&["rock.*.friction_deg"], &DEGREE, [8.0, 75.0], "soil and rock have 15 to 60"),
+    row(&["rock.*.density", "in_situ.density"], &DENSITY, [500.0, 1e4], "rock has 2000 to 3200 kg/m³"),
+    row(&["rock.*.young"], &PASCAL, [1e8, 5e11], "rock masses have 1e9 to 1e11 Pa"),
+    row(&["rock.*.cohesion"], &PASCAL, [500.0, 1e8], "soil has 1e3 to 1e5 Pa, rock masses 1e4 to 1e7"),
+    row(&["rock.*.tension"], &PASCAL, [100.0, 5e7], "rock has 1e4 to 2e7 Pa"),
+    row(&["rock.*.hoek_brown.sigma_ci"], &PASCAL, [5e5, 5e8], "rock has 5e6 to 3e8 Pa"),
+    row(&["rock.*.friction_deg"], &DEGREE, [8.0, 75.0], "soil and rock have 15 to 60°"),
     row(
         &["joint_law.*.friction_deg", "joint_law.*.residual_friction_deg", "stage.law.friction_deg"],
         &DEGREE,
         [8.0, 75.0],
-        "joints have 15 to 60",
+        "joints have 15 to 60°",
     ),
-    row(&["rock.*.dilation_deg", "joint_law.*.dilation_deg"], &DEGREE, [0.5, 50.0], "rock and joints have 0 to 20"),
+    row(&["rock.*.dilation_deg", "joint_law.*.dilation_deg"], &DEGREE, [0.5, 50.0], "rock and joints have 0 to 20°"),
     row(
         &["joint_law.*.cohesion", "joint_law.*.residual_cohesion", "stage.law.cohesion"],
         &PASCAL,
         [100.0, 1e8],
-        "joints have 0 to 1e6, rock bridges up to 3e7",
+        "joints have 0 to 1e6 Pa, rock bridges up to 3e7",
     ),
     row(
         &["joint_law.*.tension", "joint_law.*.residual_tension", "stage.law.tension"],
         &PASCAL,
         [100.0, 5e7],
-        "joints have 0 to 1e5, rock bridges up to 2e7",
+        "joints have 0 to 1e5 Pa, rock bridges up to 2e7",
     ),
-    row(&["joint_law.*.jcs", "joint_law.*.crush"], &PASCAL, [5e5, 1e9], "walls of joints have 5e6 to 3e8"),
+    row(&["joint_law.*.jcs", "joint_law.*.crush"], &PASCAL, [5e5, 1e9], "walls of joints have 5e6 to 3e8 Pa"),
     row(
         &["joint_law.*.normal_stiffness", "joint_law.*.shear_stiffness"],
         &STIFFNESS,
         [1e7, 1e14],
-        "joints have 1e8 to 1e12",
+        "joints have 1e8 to 1e12 Pa/m",
     ),
-    row(&["joint_law.*.closure_max"], &METRE, [1e-6, 2e-2], "joints close by 1e-5 to 1e-3"),
-    row(&["joint_law.*.dilation_slip"], &METRE, [1e-4, 10.0], "joints dilate over 1e-3 to 0.2"),
-    row(&["joint_law.*.tension_energy"], &ENERGY, [1.0, 1e5], "rock takes 20 to 500"),
-    row(&["joint_law.*.shear_energy"], &ENERGY, [1.0, 1e7], "rock takes 100 to 1e5"),
-    row(&["bolt.young", "bolt_pattern.young"], &PASCAL, [2e10, 4e11], "steel has 2e11"),
-    row(&["bolt.area", "bolt_pattern.area"], &SQUARE_METRE, [4e-5, 2e-2], "a bar of 25 mm has 4.9e-4"),
-    row(&["bolt.spacing", "bolt_pattern.spacing"], &METRE, [0.2, 50.0], "bars stand 1 to 5 apart"),
+    row(&["joint_law.*.closure_max"], &METRE, [1e-6, 2e-2], "joints close by 1e-5 to 1e-3 m"),
+    row(&["joint_law.*.dilation_slip"], &METRE, [1e-4, 10.0], "joints dilate over 1e-3 to 0.2 m"),
+    row(&["joint_law.*.tension_energy"], &ENERGY, [1.0, 1e5], "rock takes 20 to 500 J/m²"),
+    row(&["joint_law.*.shear_energy"], &ENERGY, [1.0, 1e7], "rock takes 100 to 1e5 J/m²"),
+    row(&["bolt.young", "bolt_pattern.young"], &PASCAL, [2e10, 4e11], "steel has 2e11 Pa"),
+    row(&["bolt.area", "bolt_pattern.area"], &SQUARE_METRE, [4e-5, 2e-2], "a bar of 25 mm has 4.9e-4 m²"),
+    row(&["bolt.spacing", "bolt_pattern.spacing"], &METRE, [0.2, 50.0], "bars stand 1 to 5 m apart"),
     row(
         &["bolt.yield_force", "bolt.pretension", "bolt_pattern.yield_force", "bolt_pattern.pretension"],
         &NEWTON,
         [5e3, 2e7],
-        "bars carry 1e5 to 5e5, anchors up to 3e6",
+        "bars carry 1e5 to 5e5 N, anchors up to 3e6",
     ),
-    row(&["bolt.free_length", "bolt_pattern.free_length"], &METRE, [0.01, 100.0], "0.05 to 0.5 at a joint"),
-    row(&["bolt_pattern.length"], &METRE, [0.5, 200.0], "bars have 2 to 12, anchors up to 60"),
-    row(&["bolt_pattern.distance"], &METRE, [0.2, 100.0], "1 to 5 is usual"),
-    row(&["joint_set.spacing", "tessellation.size"], &METRE, [0.02, 500.0], "joints stand 0.1 to 20 apart"),
-    row(&["joint_set.trace_length"], &METRE, [0.05, 5e3], "traces have 0.5 to 200"),
-    row(&["joint_set.gap"], &METRE, [5e-3, 500.0], "rock bridges have 0.1 to 10"),
+    row(&["bolt.free_length", "bolt_pattern.free_length"], &METRE, [0.01, 100.0], "0.05 to 0.5 m are usual at a joint"),
+    row(&["bolt_pattern.length"], &METRE, [0.5, 200.0], "bars have 2 to 12 m, anchors up to 60"),
+    row(&["bolt_pattern.distance"], &METRE, [0.2, 100.0], "1 to 5 m is usual"),
+    row(&["joint_set.spacing", "tessellation.size"], &METRE, [0.02, 500.0], "joints stand 0.1 to 20 m apart"),
+    row(&["joint_set.trace_length"], &METRE, [0.05, 5e3], "traces have 0.5 to 200 m"),
+    row(&["joint_set.gap"], &METRE, [5e-3, 500.0], "rock bridges have 0.1 to 10 m"),
     row(
         &[
             "joint_set.angle_deg",
@@ -101,54 +101,59 @@ const TABLE: &[Row] = &[
         ],
         &DEGREE,
         [0.2, 360.0],
-        "0 to 360",
+        "angles are in degrees, up to 360",
     ),
-    row(&["gravity.x", "gravity.y"], &ACCELERATION, [1e-2, 100.0], "down is -9.81"),
-    row(&["load.acceleration"], &ACCELERATION, [1e-3, 100.0], "a tenth of gravity is 0.981"),
+    row(&["gravity.x", "gravity.y"], &ACCELERATION, [1e-2, 100.0], "down is -9.81 m/s²"),
+    row(&["load.acceleration"], &ACCELERATION, [1e-3, 100.0], "a tenth of gravity is 0.981 m/s²"),
     row(
         &["load.pressure", "load.pressure_end", "load.traction", "port.pressure", "port.traction"],
         &PASCAL,
         [50.0, 1e9],
-        "10 m of water press with 98.1e3",
+        "10 m of water press with 98.1e3 Pa",
     ),
-    row(&["load.force", "port.force"], &NEWTON, [10.0, 1e10], "a metre of a 10 t load weighs 98.1e3"),
-    row(&["water.density"], &DENSITY, [800.0, 1500.0], "water has 1000"),
-    row(&["in_situ.sxx", "in_situ.syy", "in_situ.szz"], &PASCAL, [1e3, 1e9], "100 m of rock press with 2.6e6"),
-    row(&["in_situ.gradient", "in_situ.szz_gradient"], &STIFFNESS, [50.0, 1e6], "the weight of rock makes 2.6e4"),
-    row(&["stage.duration", "stage.duration_max"], &SECOND, [0.05, 2e3], "slopes rest or fail within 1 to 60"),
+    row(&["load.force", "port.force"], &NEWTON, [10.0, 1e10], "10 t weigh 98.1e3 N"),
+    row(&["water.density"], &DENSITY, [800.0, 1500.0], "water has 1000 kg/m³"),
+    row(&["in_situ.sxx", "in_situ.syy", "in_situ.szz"], &PASCAL, [1e3, 1e9], "100 m of rock press with 2.6e6 Pa"),
+    row(&["in_situ.gradient", "in_situ.szz_gradient"], &STIFFNESS, [50.0, 1e6], "the weight of rock makes 2.6e4 Pa/m"),
+    row(&["stage.duration", "stage.duration_max"], &SECOND, [0.05, 2e3], "slopes rest or fail within 1 to 60 s"),
 ];
 
+/// Counts of frames and of rows of a history that are not doubted; a static stage may be given far more time than it
+/// takes.
+const FRAMES: [f64; 2] = [1.0, 5e3];
+const ROWS: [f64; 2] = [5.0, 1e5];
+const OUTLASTS: f64 = 1e3;
 /// Tables of a case whose entries have names of the user's.
 const NAMED: [&str; 2] = ["rock", "joint_law"];
 /// Young's modulus of rock, and the least one (Pa) of rock that yields, which may be soil.
 const YOUNG: &str = "rock.*.young";
 const SOIL_YOUNG: f64 = 1e5;
+/// Cohesion of a joint law, and the greatest one (Pa) of a joint that is no bridge of rock: those have tensile strength.
+const COHESION: &str = "joint_law.*.cohesion";
+const JOINT_COHESION: f64 = 1e7;
 
 impl Row {
     /// What is doubtful about a value; nothing where it is usual, or 0.
-    fn doubt(&self, value: f64, low: f64) -> Option<String> {
-        let [size, high] = [value.abs(), self.range[1]];
+    fn doubt(&self, value: f64, [low, high]: [f64; 2]) -> Option<String> {
+        let size = value.abs();
         if value == 0.0 || !value.is_finite() || (low..=high).contains(&size) {
             return None;
         }
         let meant = |size: f64| (low..=high).contains(&size);
         let slip = self.unit.slips.iter().find(|(_, by)| meant(size * by));
         let looks = match slip {
-            Some((name, by)) => format!("; {value} looks like {name}: write {}", plain(value * by)),
+            Some((name, by)) => format!("; {} looks like {name}: write {}", plain(value), plain(value * by)),
             None => self.angle_meant(size).unwrap_or_default(),
         };
-        let unit = self.unit.name;
-        Some(format!("is {}, which is {}: {} {unit}{looks}", measured(value, unit), side(size, low), self.usual))
+        Some(format!("is {}, which is {}: {}{looks}", measured(value, self.unit.name), side(size, low), self.usual))
     }
 
     /// The angle of which a value looks like the tangent or the radians.
     fn angle_meant(&self, size: f64) -> Option<String> {
         let [low, high] = self.range;
-        let angle = libm::atan(size).to_degrees();
-        let is_tangent = self.unit.name == DEGREE.name && (low..=high).contains(&angle);
-        is_tangent.then(|| {
-            format!("; {size} is the tangent of {angle:.1}°, or {:.1}° in radians: write degrees", size.to_degrees())
-        })
+        let [of_tangent, of_radians] = [libm::atan(size).to_degrees(), size.to_degrees()];
+        (self.unit.name == DEGREE.name && (low..=high).contains(&of_tangent))
+            .then(|| format!("; {} is the tangent of {of_tangent:.1}°, and {of_radians:.1}° in radians", plain(size)))
     }
 }
 
@@ -157,13 +162,13 @@ fn side(size: f64, low: f64) -> &'static str {
 }
 
 fn measured(value: f64, unit: &str) -> String {
-    if unit == DEGREE.name { format!("{value}°") } else { format!("{} {unit}", plain(value)) }
+    if unit == DEGREE.name { format!("{}°", plain(value)) } else { format!("{} {unit}", plain(value)) }
 }
 
 /// A number as people write it.
 fn plain(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+    if rounded == 0.0 || (1e-4..1e5).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 /// Warnings about values of a case that are outside the usual ranges, by key, with what they look like.
@@ -172,15 +177,38 @@ pub fn doubts(case: &Case) -> Vec<String> {
     let Ok(value) = serde_json::to_value(case) else { return found };
     walk(&value, &Key::root(), "", &mut |key, pattern, value| {
         let Some(row) = row_of(pattern) else { return };
-        let low = if pattern == YOUNG && is_soil(case, key) { SOIL_YOUNG } else { row.range[0] };
-        found.extend(row.doubt(value, low).map(|doubt| format!("{key}: {doubt}")));
+        let [mut low, mut high] = row.range;
+        if pattern == YOUNG && is_soil(case, key) {
+            low = SOIL_YOUNG;
+        }
+        if pattern == COHESION && !is_bridge(case, key) {
+            high = JOINT_COHESION;
+        }
+        found.extend(row.doubt(value, [low, high]).map(|doubt| format!("{key}: {doubt}")));
     });
+    found.extend(intervals(case));
     found
 }
 
+/// Intervals of the output that give no row before the end, or more of them than anybody reads.
+fn intervals(case: &Case) -> impl Iterator<Item = String> {
+    let total: f64 = case.stages.iter().map(|stage| stage.duration_max.unwrap_or(stage.duration)).sum();
+    let Output { frame_interval, history_interval, .. } = case.output;
+    [("frame_interval", frame_interval, FRAMES), ("history_interval", history_interval, ROWS)]
+        .into_iter()
+        .filter_map(move |(name, interval, [least, most])| {
+            let count = total / interval?;
+            let odd = count < least || (count > most && total < OUTLASTS);
+            odd.then(|| {
+                let (interval, total) = (plain(interval.unwrap_or_default()), plain(total));
+                format!("output.{name}: is {interval} s, and the stages take {total} s: {count:.1e} rows; 10 to 1000 are usual")
+            })
+        })
+}
+
 /// What is usual for a key, as errors say it.
-pub fn usual(key: &str) -> Option<String> {
-    row_of(&pattern_of(key)).map(|row| format!("{} {}", row.usual, row.unit.name))
+pub fn usual(key: &str) -> Option<&'static str> {
+    row_of(&pattern_of(key)).map(|row| row.usual)
 }
 
 /// Keys of the table, `*` for names.
@@ -238,6 +266,12 @@ fn field_of_named(rest: &str) -> Option<&str> {
 fn is_soil(case: &Case, key: &Key) -> bool {
     let of = |name: &String| Key::root().field("rock").field(name).field("young") == *key;
     case.rocks.iter().any(|(name, rock)| of(name) && rock.yields())
+}
+
+/// Whether a key belongs to a joint law with tensile strength, as bridges of rock have.
+fn is_bridge(case: &Case, key: &Key) -> bool {
+    let of = |name: &String| Key::root().field("joint_law").field(name).field("cohesion") == *key;
+    case.joint_laws.iter().any(|(name, law)| of(name) && law.tension > 0.0)
 }
 
 /// Shortest and longest greater side (m) of the box of a slope.

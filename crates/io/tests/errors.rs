@@ -233,12 +233,12 @@ fn strength_out_of_range_says_value_and_limit() {
         (
             "young = 5e10",
             "young = 0",
-            "rock.granite.young: is 0 Pa, must be at least 1 and at most 1e15; rock has 1e8 to 1e11",
+            "rock.granite.young: is 0 Pa, must be at least 1 and at most 1e15; rock masses have 1e9 to 1e11 Pa",
         ),
         (
             "density = 2650",
             "density = -2650",
-            "rock.granite.density: is -2650 kg/m³, must be at least 0.001 and at most 1e6; rock has 1500 to 3500",
+            "rock.granite.density: is -2650 kg/m³, must be at least 0.001 and at most 1e6; rock has 2000 to 3200 kg/m³",
         ),
         (
             "spacing = 2.0",

@@ -9,6 +9,7 @@ mod geometry_files;
 mod issue_a_message_showed_a_line_of_any_file;
 mod issue_names_in_geometry_files_were_dropped;
 mod issue_units_and_planes_were_believed;
+mod issue_values_in_another_unit_were_believed;
 mod key_reference;
 mod limits;
 mod record_formats;

@@ -24,8 +24,8 @@ fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
     segment(&key.field("points"), &bolt.points)?;
     let force = Range::above(0.0).to(1e12);
     let length = Range::above(0.0).to(COORDINATE_MAX);
-    number(key, "young", bolt.young, Range::above(0.0).to(1e15), "Pa", "steel has 2e11")?;
-    number(key, "area", bolt.area, Range::above(0.0).to(1e3), "m²", "a bar of 25 mm has 4.9e-4")?;
+    number(key, "young", bolt.young, Range::above(0.0).to(1e15), "Pa", "")?;
+    number(key, "area", bolt.area, Range::above(0.0).to(1e3), "m²", "")?;
     number(key, "spacing", bolt.spacing, length, "m", "1 for one bar per metre")?;
     optional(key, "yield_force", bolt.yield_force, force, "N", "leave it out for a bar that never yields")?;
     optional(key, "rupture_strain", bolt.rupture_strain, Range::above(0.0).to(1e6), "", "0.05 to 0.2 is usual")?;

@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::Invalid;
 use crate::key::{Key, list, nearest};
+use crate::plausible;
 use crate::{Case, StageKind, TimeTable};
 
 /// Outcome of a check.
@@ -106,7 +107,8 @@ pub fn fail(key: &Key, message: impl Into<String>) -> Check {
     Err(invalid(key, message))
 }
 
-/// Checks the number `name` of the table `key` (or the element `key` itself, if `name` is empty).
+/// Checks the number `name` of the table `key` (or the element `key` itself, if `name` is empty). Without a hint it
+/// is that of the table of usual ranges.
 ///
 /// # Errors
 /// The value is not finite or outside the range.
@@ -117,6 +119,7 @@ pub fn number(key: &Key, name: &str, value: f64, range: Range, unit: &str, hint:
     let key = if name.is_empty() { key.clone() } else { key.field(name) };
     let space = if unit.is_empty() { "" } else { " " };
     let limit = if value.is_finite() { range.to_string() } else { format!("a finite number, {range}") };
+    let hint = if hint.is_empty() { plausible::usual(key.as_str()).unwrap_or_default() } else { hint };
     fail(&key, format!("is {}{space}{unit}, must be {limit}; {hint}", Plain(value)))
 }
 
