@@ -30,7 +30,7 @@ pub enum Keeper {
 impl Keeper {
     const ALL: [Self; 3] = [Self::Run, Self::Model, Self::Fmu];
 
-    /// What a message calls it, and how its states are continued.
+    /// Its word in messages, and how its states are continued.
     fn told(self) -> [&'static str; 2] {
         match self {
             Self::Run => ["a run", "`enmm run --resume` continues it"],

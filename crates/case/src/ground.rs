@@ -103,7 +103,7 @@ pub struct Quiet {
     /// How the file is read, where it does not say so itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub record: Option<RecordReading>,
-    /// What the record shows of the wave; default: the incident wave. The motion of an outcrop is halved.
+    /// Part of the wave that the record shows; default: the incident wave. The motion of an outcrop is halved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<WaveMotion>,
     /// Correction of a record that does not end at rest; default: none.

@@ -1,4 +1,4 @@
-//! What each ground motion of a case does, and what is doubtful about it.
+//! The action of each ground motion of a case, and doubts about it.
 
 use serde::Serialize;
 

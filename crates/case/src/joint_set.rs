@@ -234,13 +234,13 @@ pub struct LawRegion {
 }
 
 impl Case {
-    /// What messages, tables and pictures call a joint set: its name, or its key.
+    /// Word for a joint set in messages, tables and pictures: its name, or its key.
     pub fn joint_set_name(&self, set: usize) -> String {
         let name = self.joint_sets.get(set).and_then(|set| set.name.clone());
         name.unwrap_or_else(|| format!("joint_set[{set}]"))
     }
 
-    /// What messages, tables and pictures call a bolt: its name, or its key.
+    /// Word for a bolt in messages, tables and pictures: its name, or its key.
     pub fn bolt_name(&self, bolt: usize) -> String {
         let name = self.bolts.get(bolt).and_then(|bolt| bolt.name.clone());
         name.unwrap_or_else(|| format!("bolt[{bolt}]"))

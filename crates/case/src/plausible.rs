@@ -128,12 +128,13 @@ const NAMED: [&str; 2] = ["rock", "joint_law"];
 /// Young's modulus of rock, and the least one (Pa) of rock that yields, which may be soil.
 const YOUNG: &str = "rock.*.young";
 const SOIL_YOUNG: f64 = 1e5;
-/// Cohesion of a joint law, and the greatest one (Pa) of a joint that is no bridge of rock: those have tensile strength.
+/// Cohesion of a joint law, and the greatest one (Pa) of a joint that is no bridge of rock: bridges have tensile
+/// strength.
 const COHESION: &str = "joint_law.*.cohesion";
 const JOINT_COHESION: f64 = 1e7;
 
 impl Row {
-    /// What is doubtful about a value; nothing where it is usual, or 0.
+    /// The doubt about a value; none where it is usual, or 0.
     fn doubt(&self, value: f64, [low, high]: [f64; 2]) -> Option<String> {
         let size = value.abs();
         if value == 0.0 || !value.is_finite() || (low..=high).contains(&size) {
@@ -194,19 +195,22 @@ pub fn doubts(case: &Case) -> Vec<String> {
 fn intervals(case: &Case) -> impl Iterator<Item = String> {
     let total: f64 = case.stages.iter().map(|stage| stage.duration_max.unwrap_or(stage.duration)).sum();
     let Output { frame_interval, history_interval, .. } = case.output;
-    [("frame_interval", frame_interval, FRAMES), ("history_interval", history_interval, ROWS)]
-        .into_iter()
-        .filter_map(move |(name, interval, [least, most])| {
+    [("frame_interval", frame_interval, FRAMES), ("history_interval", history_interval, ROWS)].into_iter().filter_map(
+        move |(name, interval, [least, most])| {
             let count = total / interval?;
             let odd = count < least || (count > most && total < OUTLASTS);
             odd.then(|| {
                 let (interval, total) = (plain(interval.unwrap_or_default()), plain(total));
-                format!("output.{name}: is {interval} s, and the stages take {total} s: {count:.1e} rows; 10 to 1000 are usual")
+                format!(
+                    "output.{name}: is {interval} s, and the stages take {total} s: {count:.1e} rows; 10 to 1000 are \
+                     usual"
+                )
             })
-        })
+        },
+    )
 }
 
-/// What is usual for a key, as errors say it.
+/// Usual values of a key, as errors give them.
 pub fn usual(key: &str) -> Option<&'static str> {
     row_of(&pattern_of(key)).map(|row| row.usual)
 }
@@ -254,7 +258,7 @@ fn pattern_of(key: &str) -> String {
     named.unwrap_or(pattern)
 }
 
-/// What follows a name, which may be quoted, and its point.
+/// The key after a name, which may be quoted, and its point.
 fn field_of_named(rest: &str) -> Option<&str> {
     match rest.strip_prefix('"') {
         Some(quoted) => quoted.split_once("\".").map(|(_, field)| field),
@@ -277,7 +281,7 @@ fn is_bridge(case: &Case, key: &Key) -> bool {
 /// Shortest and longest greater side (m) of the box of a slope.
 pub const MODEL_SIZE: [f64; 2] = [1.0, 1e4];
 
-/// What is odd about the width and height (m) of a model.
+/// A warning about the width and height (m) of a model that no slope has.
 pub fn odd_size([width, height]: [f64; 2]) -> Option<String> {
     let (size, [least, most]) = (width.max(height), MODEL_SIZE);
     let remedy = if size > most {

@@ -15,7 +15,7 @@ pub struct Pond {
     pub depth: f64,
     /// First x and last (m).
     pub span: [f64; 2],
-    /// What stands there.
+    /// The water that stands there.
     pub part: PondPart,
     /// Shallower places of the same kind.
     pub others: usize,
@@ -38,7 +38,7 @@ impl Pond {
         !matches!(self.part, PondPart::BeyondGround(_))
     }
 
-    /// What to tell of it.
+    /// Its line in messages.
     pub fn text(&self) -> String {
         let short = |value: f64| (1e3 * value).round() / 1e3 + 0.0;
         let Self { key, depth, span: [from, to], part, others } = self;

@@ -56,7 +56,7 @@ impl BaseMotionKind {
     }
 }
 
-/// What a record shows of the wave that comes in through a quiet boundary.
+/// Part of the wave through a quiet boundary that a record shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]

@@ -1,4 +1,4 @@
-//! What commands print of notes and warnings: warnings first, and notes of the drawing and of the build once, by
+//! Notes and warnings as commands print them: warnings first, and notes of the drawing and of the build once, by
 //! `enmm check`; other commands count them, and show them all above an error.
 
 use enmm_io::LoadedCase;

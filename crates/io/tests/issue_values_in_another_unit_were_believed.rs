@@ -52,7 +52,7 @@ frame_interval = 0.5
 history_interval = 0.02
 "#;
 
-/// What is said of a case: its warnings, or the error that refuses it.
+/// Messages about a case: its warnings, or the error that refuses it.
 fn told(text: &str) -> Vec<String> {
     match parse_case(text, "test.toml", Path::new(".")) {
         Ok(loaded) => loaded.warnings,

@@ -6,7 +6,7 @@ use crate::limits::{ACCELERATION_MAX, VELOCITY_MAX};
 use crate::record::RecordReading;
 use crate::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
 
-/// What a quiet boundary without a wave is told of a key.
+/// The error about a key of a quiet boundary without a wave.
 const NO_WAVE: &str = "belongs to a wave, and the boundary has none; add `wave = [1.0, 0.0]` or remove it";
 
 /// Slope of a side, relative to its length, up to which it is vertical.

@@ -148,7 +148,7 @@ impl Reader<'_> {
         objects.iter().try_for_each(|(key, value)| self.object(key, value, said))
     }
 
-    /// What the properties of a feature say of it; those that are not read are counted.
+    /// Law and role of a feature by its properties; those that are not read are counted.
     fn said(&mut self, key: &Key, feature: &Value) -> Result<Said, CaseError> {
         let mut said = Said::default();
         let members = feature.as_object().into_iter().flatten();

@@ -49,7 +49,7 @@ pub struct Geometry {
     pub bolts: BTreeMap<String, Vec<LocatedBar>>,
     /// Unit of the file and what is made of it.
     pub unit: String,
-    /// What the file says of its unit, if it is no drawing.
+    /// Unit by the head of the file, if it is no drawing.
     declared: Option<Declared>,
     /// Traces without a law of their own, by layer.
     lawless: BTreeMap<String, usize>,

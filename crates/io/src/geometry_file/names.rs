@@ -31,7 +31,7 @@ impl Ring {
     }
 }
 
-/// What a name of a property or column is for.
+/// Use of a property or a column by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
     /// It holds the joint law, or the word for a loop.

@@ -17,7 +17,7 @@ pub struct Survey {
     pub is_drawing: bool,
     /// Unit of the file.
     pub unit: String,
-    /// What was converted, and parts that are not used.
+    /// Conversions, and parts that are not used.
     pub notes: Vec<String>,
 }
 

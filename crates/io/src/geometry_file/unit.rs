@@ -19,7 +19,7 @@ pub struct Unit {
     pub note: Option<String>,
 }
 
-/// What a file says of its unit.
+/// The unit by the head of a file.
 #[derive(Debug, Clone, Default)]
 pub struct Declared {
     /// The text: `EPSG:2227`, `urn:ogc:def:crs:OGC:1.3:CRS84`, `mm`.

@@ -10,7 +10,7 @@ use crate::case_error::{is_numeric, shown};
 
 /// Rows from which on a count instead of a time is no chance.
 const COUNTED: usize = 10;
-/// What a row looks like.
+/// Layout of a row.
 const ROW: &str = "each line holds time (s) and value, as in `0.02, 1.5`";
 
 /// Columns of time and value, as indices.

@@ -17,7 +17,7 @@ const OTHER_TIMES: [&str; 7] = ["min", "minutes", "h", "hours", "us", "µs", "μ
 /// Name of a column.
 pub struct Name(String);
 
-/// What stands before the rows.
+/// The head before the rows.
 #[derive(Default)]
 pub struct Head {
     /// Names of the columns, if there are any.

@@ -1,8 +1,8 @@
-//! What a case wants of a record, and why it cannot have it.
+//! The request of a case for a record, and why it cannot be met.
 
 use enmm::model::case::record::{BaseMotionKind, RecordReading};
 
-/// What the case wants of a record.
+/// The request of a case for a record.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted<'a> {
     /// Quantity; none for factors on the velocity of a wave.

@@ -210,7 +210,7 @@ pub enum BoundError {
     /// Every block is held, and none can fail; perhaps ends of joints that miss a line hold them.
     #[error("{}: {}", .invalid.key, .invalid.message)]
     Held {
-        /// What is wrong.
+        /// The fault.
         invalid: Invalid,
         /// Ends that hold the slope.
         ends: Option<Box<NearEnds>>,

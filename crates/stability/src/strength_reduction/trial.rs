@@ -156,8 +156,8 @@ impl Base {
         self.follow(blank, simulation, Some(&fall), interrupt)
     }
 
-    /// Pushes a slope that has come to rest in a trial, until it has moved far, but for a `time` (s) at most; lets it go
-    /// from there, and follows it until it rests again.
+    /// Pushes a slope that has come to rest in a trial, until it has moved far, but for a `time` (s) at most; lets it
+    /// go from there, and follows it until it rests again.
     pub fn push(
         &self,
         (trial, mut simulation): (Trial, Simulation),
