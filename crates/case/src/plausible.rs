@@ -68,7 +68,7 @@ const TABLE: &[Row] = &[
     row(
         &["joint_law.*.normal_stiffness", "joint_law.*.shear_stiffness"],
         &STIFFNESS,
-        [1e7, 1e14],
+        [1e6, 1e14],
         "joints have 1e8 to 1e12 Pa/m",
     ),
     row(&["joint_law.*.closure_max"], &METRE, [1e-6, 2e-2], "joints close by 1e-5 to 1e-3 m"),

@@ -45,8 +45,9 @@ impl LoadedCase {
     /// The first value that cannot be used.
     pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
-        // Old names were reported where the case was read.
-        Self::checked(case, source, Vec::new()).map(|loaded| Self { warnings: Vec::new(), ..loaded })
+        // Old names were reported where the case was read; its values may be new.
+        Self::checked(case, source, Vec::new())
+            .map(|loaded| Self { warnings: plausible::doubts(&loaded.typed), ..loaded })
     }
 
     fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
