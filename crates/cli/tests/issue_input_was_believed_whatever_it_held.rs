@@ -277,6 +277,7 @@ fn sets_at_their_own_region_were_held_by_rock() {
     assert!(held.iter().all(|line| !line.contains("J1 ends")), "{held:?}");
     // Two ends of a joint in the rock, near the lines of a set: these are called by their names.
     let near = text.replace("[[36.8, 2], [36.8, 23]]", "[[20, 10], [22, 11]]");
+    let near = near.replace(outline, &format!("{outline}\nnear_ends = 2.0"));
     fs::write(place.path("case.toml"), near).expect("written");
     let checked = place.enmm(&["check", "case.toml"]);
     assert!(checked.stdout.contains(" J1") && !checked.stdout.contains("joint_set[0]"), "{checked:?}");

@@ -70,13 +70,14 @@ impl Outcome {
         }
     }
 
-    /// Asserts a status of 2 and one line that begins with `error: ` and has all `parts`.
+    /// Asserts a status of 2 and one line that begins with `error: ` and has all `parts`; warnings may stand above it.
     pub fn assert_bad_input(&self, parts: &[&str]) {
         assert_eq!(self.status, Some(2), "{self:?}");
-        assert_eq!(self.stderr.lines().count(), 1, "{self:?}");
-        assert!(self.stderr.starts_with("error: "), "{self:?}");
+        let errors: Vec<&str> = self.stderr.lines().skip_while(|line| line.starts_with("warning: ")).collect();
+        assert_eq!(errors.len(), 1, "{self:?}");
+        assert!(errors[0].starts_with("error: "), "{self:?}");
         for part in parts {
-            assert!(self.stderr.contains(part), "{part:?} is not in {self:?}");
+            assert!(errors[0].contains(part), "{part:?} is not in {self:?}");
         }
     }
 }
