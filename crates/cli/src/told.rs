@@ -20,7 +20,7 @@ pub struct Told {
 }
 
 impl Told {
-    /// What `enmm check` says of a case; of one that cannot be built what its reader says.
+    /// The notes of `enmm check` on a case; of one that cannot be built those of its reader.
     pub fn of(loaded: &LoadedCase) -> Self {
         match enmm_implicit::simulation(loaded.case.clone()) {
             Ok(simulation) => {

@@ -178,7 +178,7 @@ fn a_water_line_that_ends_in_the_rock_flooded_the_pit() {
                    water does not; draw it below the face";
     assert_eq!(checked("[[-20, 8], [0, 6], [40, 20]]")[0].len(), 1);
     assert_eq!(checked("[[-20, 8], [10, 5], [40, 20]]")[0], [sloping]);
-    // A lake, and a line from the toe, are what they should be; a line from the face is a lake that a note tells of.
+    // A lake, and a line from the toe, are as they should be; a line from the face is a lake, for a note.
     assert_eq!(checked("[[-20, 4], [2, 4], [40, 20]]"), [none.clone(), none.clone()]);
     assert_eq!(checked("[[-20, 0], [0, 0], [40, 20]]"), [none.clone(), none.clone()]);
     let lake = checked("[[5, 10], [40, 20]]");

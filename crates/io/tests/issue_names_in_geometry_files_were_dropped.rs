@@ -53,7 +53,7 @@ fn properties_that_are_not_read_were_not_listed() {
     assert_eq!(loaded.warnings, ["g.geojson: properties not used: law of a polygon (1)"]);
 }
 
-/// What `ogr2ogr` makes of a drawing: closed lines on layers with the names of loops.
+/// A drawing as `ogr2ogr` converts it: closed lines on layers with the names of loops.
 #[test]
 fn lines_of_a_converted_drawing_are_loops_by_their_layers() {
     let text = collection("\"Layer\": \"Hole\"").replace("[[1, 0], [8, 7]]", "[[5, 1], [6, 1], [6, 2], [5, 1]]");

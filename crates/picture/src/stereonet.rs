@@ -185,7 +185,7 @@ impl Stereonet {
         }
     }
 
-    /// What stands beside the marks of a set: its name where that is short, else its number in the list.
+    /// Label beside the marks of a set: its name where that is short, else its number in the list.
     fn label(&self, set: usize) -> String {
         let name = &self.sets[set].name;
         if name.chars().count() <= LABEL { name.clone() } else { (set + 1).to_string() }

@@ -77,7 +77,7 @@ pub struct CarryingCorner {
 }
 
 impl CarryingCorner {
-    /// Whether the force is more than the rock over the length bears.
+    /// Whether the force is more than the strength of the rock over the length.
     pub fn is_crushed(&self) -> bool {
         self.force >= self.corner.capacity()
     }
@@ -100,7 +100,7 @@ pub fn carrying_corners(simulation: &Simulation) -> Vec<CarryingCorner> {
 }
 
 /// Corner contacts of the drawing in a point, or over a length that may be an error of the drawing, as that at ends of
-/// joints is, and that does not bear the weight of their block.
+/// joints is, and whose strength is less than the weight of their block.
 pub fn weak_corners(simulation: &Simulation) -> Vec<CornerContact> {
     let drawn = simulation.built().end_distances.join;
     let is_weak = |c: &CornerContact| c.length() <= drawn && c.capacity() < weight(simulation, c.block);

@@ -13,7 +13,7 @@ const SURVEY_FOOT: f64 = 1200.0 / 3937.0;
 pub struct Unit {
     /// Metres in a unit, by which coordinates are taken times.
     pub metres: f64,
-    /// What the file says and what is made of it: `millimetres ($INSUNITS is 4), taken times 0.001`.
+    /// The unit in the file and the factor it gets: `millimetres ($INSUNITS is 4), taken times 0.001`.
     pub text: String,
     /// A note where that is not sure or contradicted.
     pub note: Option<String>,

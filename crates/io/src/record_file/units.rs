@@ -81,7 +81,7 @@ pub fn is_foreign(text: &str) -> bool {
     raw.contains(&text.as_str()) || text.contains("/s") || text.contains("s-")
 }
 
-/// Factor to SI units, and what is told of the unit: head, `record.unit` and `scale` must not contradict each other.
+/// Factor to SI units, and words about the unit: head, `record.unit` and `scale` must not contradict each other.
 /// `is_open` for files in which `scale` may have converted the unit before heads were read.
 pub fn factor(head: Option<Unit>, wanted: &Wanted, is_open: bool) -> Result<(f64, String), Fault> {
     let key = match &wanted.reading.unit {
