@@ -96,3 +96,20 @@ fn both_ends_of_a_short_trace_are_joined() {
     assert_eq!(ends.len(), 2, "{ends:?}");
     assert!((traces[0][0].y - 10.0).abs() < 1e-12 && (traces[0][1].y - 8.95).abs() < 1e-12);
 }
+
+/// A plane drawn to the toe whose end lies in the ground below it: the nearest point is ground in front of the toe.
+#[test]
+fn an_end_beside_a_corner_of_the_outline_goes_to_the_corner() {
+    for end in [[9.97, 0.001], [9.999, 0.08], [9.92, 0.03]] {
+        let mut traces = [line(&[[0.0, 5.0], end])];
+        assert_eq!(changes(&join(&mut traces)), [(EndChange::Extended, EndLine::Outline)]);
+        assert_eq!(traces[0].last(), Some(&Point::new(10.0, 0.0)), "{end:?}");
+    }
+    // The trace's own line meets the outline nearer than the corner; another trace lies nearer than the corner.
+    let mut traces = [line(&[[0.0, 0.09], [9.99, 0.09]])];
+    join(&mut traces);
+    assert_eq!(traces[0][1], Point::new(10.0, 0.09));
+    let mut traces = [line(&[[0.0, 0.05], [10.0, 0.05]]), line(&[[5.0, 5.0], [9.95, 0.06]])];
+    join(&mut traces);
+    assert!((traces[1][1] - Point::new(10.0, 0.0)).norm() > 0.04, "{:?}", traces[1]);
+}

@@ -183,12 +183,14 @@ struct Lines {
     work: Work,
 }
 
-/// The nearest meetings of the line of an end with others, ahead and behind, and the nearest line beside it.
+/// The nearest meetings of the line of an end with others, ahead and behind, and what lies nearest to it.
 #[derive(Default)]
 struct Found {
     ahead: Option<(f64, EndLine)>,
     behind: Option<(f64, EndLine)>,
     beside: Option<(f64, EndLine, Point)>,
+    /// The nearest corner of the outline within the distance that ends are joined over.
+    corner: Option<(f64, Point)>,
 }
 
 impl Lines {
@@ -220,7 +222,7 @@ impl Lines {
         Ok(self.find(end, points)?.and_then(|found| self.judge(end, found)))
     }
 
-    fn judge(&self, end: &End, Found { ahead, behind, beside }: Found) -> Option<(NearEnd, Vec<Point>)> {
+    fn judge(&self, end: &End, Found { ahead, behind, beside, corner }: Found) -> Option<(NearEnd, Vec<Point>)> {
         let EndDistances { join, list, .. } = self.distances;
         let join = join.min(0.5 * end.whole);
         let near = |gap, line, meets, change| NearEnd { trace: end.trace, place: end.place, gap, line, meets, change };
@@ -230,10 +232,15 @@ impl Lines {
         if let Some((gap, line)) = behind.filter(|(gap, _)| *gap < join && is_overshoot) {
             return Some((near(gap, line, along(-gap), EndChange::Trimmed), vec![along(-gap)]));
         }
-        let beside = beside.filter(|(beside, ..)| *beside < list);
+        // A plane that daylights at the toe ends there, on whichever side of it the drawing has its end.
+        let is_beside_outline = beside.is_some_and(|(_, line, _)| line == EndLine::Outline);
+        let is_there = |distance: f64| is_beside_outline && distance < join && distance < gap(ahead);
+        let at_corner = corner.filter(|corner| is_there(corner.0)).map(|(gap, at)| (gap, EndLine::Outline, at));
+        let beside = at_corner.or(beside).filter(|(beside, ..)| *beside < list);
         let is_near = beside.is_some_and(|(beside, ..)| beside < join);
         let goes_there = |line: EndLine| is_near && beside.is_some_and(|(_, other, _)| other == line);
-        if let Some((gap, line)) = ahead.filter(|(gap, line)| *gap < join || *gap < list && goes_there(*line)) {
+        let is_ahead = |(gap, line): &(f64, EndLine)| *gap < join || *gap < list && goes_there(*line);
+        if let Some((gap, line)) = ahead.filter(|ahead| at_corner.is_none() && is_ahead(ahead)) {
             return Some((near(gap, line, along(gap), EndChange::Extended), vec![along(gap)]));
         }
         if let Some((beside, line, foot)) = beside.filter(|_| is_near) {
@@ -272,10 +279,19 @@ impl Lines {
             about.retain(|stretch| !crossed.contains(&stretch.line) && !end.crosses(stretch, tolerance));
             found.beside = beside(end, &about);
             if reach >= list || found.beside.is_some_and(|(distance, ..)| distance <= reach) {
+                found.corner = self.corner(end, points)?;
                 return Ok(Some(found));
             }
             reach = (2.0 * reach).min(list);
         }
+    }
+
+    /// The corner of the outline nearest to an end of a trace through some points, with its distance (m).
+    fn corner(&self, end: &End, points: &[Point]) -> Result<Option<(f64, Point)>, GeometryError> {
+        let about = self.about(end, points, self.distances.join)?;
+        let outlines = about.iter().filter(|stretch| stretch.line == EndLine::Outline);
+        let corners = outlines.flat_map(|stretch| stretch.ends).map(|corner| ((corner - end.place).norm(), corner));
+        Ok(corners.min_by(|a, b| a.0.total_cmp(&b.0)))
     }
 
     /// Stretches of other lines along the last stretch of a trace and ahead of it.

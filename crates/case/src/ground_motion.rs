@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::expand::motions::{ends, peak};
-use super::record::{BaseMotionKind, Baseline, RecordOrigin, STANDARD_GRAVITY, VELOCITY_PEAKS};
+use super::plausible::usual_peaks;
+use super::record::{BaseMotionKind, Baseline, RecordOrigin, STANDARD_GRAVITY};
 use super::{Case, StageKind, TimeTable};
 
 /// Share of the duration of a record by which stages may end before it.
@@ -167,7 +168,7 @@ impl GroundMotion {
 
     /// Peaks that no record of an earthquake has.
     fn doubts(&self) -> Vec<String> {
-        let [least, most] = self.kind.usual_peaks();
+        let ([least, most], largest) = usual_peaks(self.kind);
         let limit = |value: f64| match self.kind {
             BaseMotionKind::Acceleration => format!("{} g", short(value / STANDARD_GRAVITY)),
             kind => format!("{} {}", short(value), kind.unit()),
@@ -184,9 +185,13 @@ impl GroundMotion {
         } else if self.peak < least {
             doubts.push(format!("the peak of {named} is {}, below {}: {remedy}", self.size(), limit(least)));
         } else if self.peak > most {
-            doubts.push(format!("the peak of {named} is {}, above {}: {remedy}", self.size(), limit(most)));
+            doubts.push(format!(
+                "the peak of {named} is {}, above {}, and {largest}: {remedy}",
+                self.size(),
+                limit(most)
+            ));
         }
-        let [_, fastest] = VELOCITY_PEAKS;
+        let ([_, fastest], _) = usual_peaks(BaseMotionKind::Velocity);
         if let Some(peak) = self.velocity_peak.filter(|peak| *peak > fastest && self.peak <= most) {
             doubts.push(format!(
                 "{named} gives a velocity of {} m/s, above {fastest} m/s: it drifts unless its baseline is corrected, \
@@ -200,7 +205,7 @@ impl GroundMotion {
 
     /// An acceleration of the base that goes on moving it when it is over.
     fn drift(&self, named: &str, most: f64) -> Option<String> {
-        let [_, fastest] = VELOCITY_PEAKS;
+        let ([_, fastest], _) = usual_peaks(BaseMotionKind::Velocity);
         let is_direct = self.kind == BaseMotionKind::Acceleration && self.velocity_peak.is_none();
         let drifts = is_direct && self.peak <= most && self.ends[0].abs() > fastest;
         drifts.then(|| {

@@ -249,7 +249,7 @@ pub struct Domain {
     #[serde(default)]
     pub snap_tolerance: Option<f64>,
     /// Distance (m) within which an end of a trace that almost meets the outline or another trace is extended or
-    /// trimmed to it; default 0.002 of the bounding-box diagonal, 0 keeps what is drawn.
+    /// trimmed to it; default 0.0023 of the bounding-box diagonal, 0 keeps what is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extend_ends: Option<f64>,
     /// Distance (m) within which an end that stops in the rock before the outline or another trace is named in a note,

@@ -3,8 +3,10 @@
 
 use serde_json::Value;
 
+use crate::expand::far_heads;
 use crate::key::Key;
-use crate::{Case, Output};
+use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
+use crate::{Case, Output, RandomOf};
 
 /// A unit with the slips that people make in it: what a number was meant in, and by what it must be multiplied.
 struct Unit {
@@ -22,6 +24,7 @@ const DENSITY: Unit =
     Unit { name: "kg/m³", slips: &[("t/m³", 1e3), ("kN/m³", 1e3 / 9.81), ("N/m³", 1.0 / 9.81), ("g/m³", 1e-3)] };
 const STIFFNESS: Unit = Unit { name: "Pa/m", slips: &[("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9)] };
 const ACCELERATION: Unit = Unit { name: "m/s²", slips: &[("cm/s²", 1e-2), ("mm/s²", 1e-3), ("km/s²", 1e3)] };
+const SPEED: Unit = Unit { name: "m/s", slips: &[("cm/s", 1e-2), ("mm/s", 1e-3)] };
 const SECOND: Unit = Unit { name: "s", slips: &[("ms", 1e-3), ("hours", 3600.0)] };
 const ENERGY: Unit = Unit { name: "J/m²", slips: &[("kJ/m²", 1e3), ("N/mm", 1e3)] };
 
@@ -118,6 +121,20 @@ const TABLE: &[Row] = &[
     row(&["stage.duration", "stage.duration_max"], &SECOND, [0.05, 2e3], "slopes rest or fail within 1 to 60 s"),
 ];
 
+/// The same of what is measured: peaks of records of earthquakes, and the longer side of the box of the rock. Below the
+/// first peak a record hardly moves anything, and above the second hardly any has been measured.
+const MEASURED: &[Row] = &[
+    row(
+        &["record.acceleration"],
+        &ACCELERATION,
+        [0.01 * STANDARD_GRAVITY, 3.0 * STANDARD_GRAVITY],
+        "the largest known is some 4 g",
+    ),
+    row(&["record.velocity"], &SPEED, [0.005, 5.0], "the largest known is some 4 m/s"),
+    row(&["record.displacement"], &METRE, [0.0005, 10.0], "the largest known is some 9 m"),
+    row(&["domain.size"], &METRE, [1.0, 1e4], "slopes are 1 m to 10 km long"),
+];
+
 /// Counts of frames and of rows of a history that are not doubted; a static stage may be given far more time than it
 /// takes.
 const FRAMES: [f64; 2] = [1.0, 5e3];
@@ -177,18 +194,41 @@ pub fn doubts(case: &Case) -> Vec<String> {
     let mut found = Vec::new();
     let Ok(value) = serde_json::to_value(case) else { return found };
     walk(&value, &Key::root(), "", &mut |key, pattern, value| {
-        let Some(row) = row_of(pattern) else { return };
-        let [mut low, mut high] = row.range;
-        if pattern == YOUNG && is_soil(case, key) {
-            low = SOIL_YOUNG;
-        }
-        if pattern == COHESION && !is_bridge(case, key) {
-            high = JOINT_COHESION;
-        }
-        found.extend(row.doubt(value, [low, high]).map(|doubt| format!("{key}: {doubt}")));
+        found.extend(doubt(case, key.as_str(), pattern, value).map(|doubt| format!("{key}: {doubt}")));
     });
+    found.extend(random_values(case));
     found.extend(intervals(case));
+    found.extend(far_heads(case));
     found
+}
+
+/// The doubt about a value of a key, whose pattern the table may know.
+fn doubt(case: &Case, key: &str, pattern: &str, value: f64) -> Option<String> {
+    let row = row_of(pattern)?;
+    let [mut low, mut high] = row.range;
+    if pattern == YOUNG && is_soil(case, key) {
+        low = SOIL_YOUNG;
+    }
+    if pattern == COHESION && !is_bridge(case, key) {
+        high = JOINT_COHESION;
+    }
+    row.doubt(value, [low, high])
+}
+
+/// Doubts about the middles of distributions, in the units of their keys.
+fn random_values(case: &Case) -> impl Iterator<Item = String> {
+    case.random.iter().enumerate().filter_map(|(k, random)| {
+        let middle = random.least.zip(random.most).map(|(least, most)| 0.5 * (least + most));
+        let given = [("mean", random.mean), ("mode", random.mode), ("most", middle)];
+        let (name, variable) = given.into_iter().find_map(|(name, value)| Some((name, value?)))?;
+        let value = match random.of {
+            RandomOf::Value => variable,
+            RandomOf::Tangent => libm::atan(variable).to_degrees(),
+            RandomOf::Log10 => libm::pow(10.0, variable),
+        };
+        let doubt = doubt(case, &random.key, &pattern_of(&random.key), value)?;
+        Some(format!("random[{k}].{name}: {} {doubt}", random.key))
+    })
 }
 
 /// Intervals of the output that give no row before the end, or more of them than anybody reads.
@@ -221,7 +261,7 @@ pub fn keys() -> impl Iterator<Item = &'static str> {
 }
 
 fn row_of(pattern: &str) -> Option<&'static Row> {
-    TABLE.iter().find(|row| row.keys.contains(&pattern))
+    TABLE.iter().chain(MEASURED).find(|row| row.keys.contains(&pattern))
 }
 
 /// Calls `see` for each number of a value that the table may know, with its key and that key as the table has it.
@@ -267,23 +307,21 @@ fn field_of_named(rest: &str) -> Option<&str> {
 }
 
 /// Whether a key belongs to rock that yields.
-fn is_soil(case: &Case, key: &Key) -> bool {
-    let of = |name: &String| Key::root().field("rock").field(name).field("young") == *key;
+fn is_soil(case: &Case, key: &str) -> bool {
+    let of = |name: &String| Key::root().field("rock").field(name).field("young").as_str() == key;
     case.rocks.iter().any(|(name, rock)| of(name) && rock.yields())
 }
 
 /// Whether a key belongs to a joint law with tensile strength, as bridges of rock have.
-fn is_bridge(case: &Case, key: &Key) -> bool {
-    let of = |name: &String| Key::root().field("joint_law").field(name).field("cohesion") == *key;
+fn is_bridge(case: &Case, key: &str) -> bool {
+    let of = |name: &String| Key::root().field("joint_law").field(name).field("cohesion").as_str() == key;
     case.joint_laws.iter().any(|(name, law)| of(name) && law.tension > 0.0)
 }
 
-/// Shortest and longest greater side (m) of the box of a slope.
-pub const MODEL_SIZE: [f64; 2] = [1.0, 1e4];
-
 /// A warning about the width and height (m) of a model that no slope has.
 pub fn odd_size([width, height]: [f64; 2]) -> Option<String> {
-    let (size, [least, most]) = (width.max(height), MODEL_SIZE);
+    let row = row_of("domain.size")?;
+    let (size, [least, most]) = (width.max(height), row.range);
     let remedy = if size > most {
         "coordinates are in metres, so divide those in millimetres by 1000"
     } else if size < least {
@@ -292,8 +330,10 @@ pub fn odd_size([width, height]: [f64; 2]) -> Option<String> {
     } else {
         return None;
     };
-    Some(format!(
-        "the rock is {width:.6} m by {height:.6} m, and slopes are {least} m to {:.0} km long; {remedy}",
-        1e-3 * most
-    ))
+    Some(format!("the rock is {width:.6} m by {height:.6} m, and {}; {remedy}", row.usual))
+}
+
+/// Usual peaks of records of a quantity (SI), and what is known of the largest.
+pub fn usual_peaks(kind: BaseMotionKind) -> ([f64; 2], &'static str) {
+    row_of(&format!("record.{}", kind.name())).map_or(([0.0, f64::INFINITY], ""), |row| (row.range, row.usual))
 }

@@ -5,14 +5,6 @@ use serde::{Deserialize, Serialize};
 /// Standard gravity (m/s²), by which records in g are converted: exact by the 3rd CGPM (1901).
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Peaks of acceleration (m/s²) that records of earthquakes have: below the first a record hardly moves anything, and
-/// above the second hardly any has been measured, on rock none. The largest known is some 4 g.
-pub const ACCELERATION_PEAKS: [f64; 2] = [0.01 * STANDARD_GRAVITY, 3.0 * STANDARD_GRAVITY];
-/// The same of velocity (m/s), of which the largest known is some 4 m/s.
-pub const VELOCITY_PEAKS: [f64; 2] = [0.005, 5.0];
-/// The same of displacement (m), of which the largest known is some 9 m.
-pub const DISPLACEMENT_PEAKS: [f64; 2] = [0.0005, 10.0];
-
 /// Quantity in the rows of a ground motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -43,15 +35,6 @@ impl BaseMotionKind {
             Self::Acceleration => "acceleration",
             Self::Velocity => "velocity",
             Self::Displacement => "displacement",
-        }
-    }
-
-    /// Peaks (SI) that records of earthquakes have.
-    pub const fn usual_peaks(self) -> [f64; 2] {
-        match self {
-            Self::Acceleration => ACCELERATION_PEAKS,
-            Self::Velocity => VELOCITY_PEAKS,
-            Self::Displacement => DISPLACEMENT_PEAKS,
         }
     }
 }

@@ -98,6 +98,41 @@ fn slips_in_a_unit_are_called_by_it() {
     }
 }
 
+/// Bolts at -165° for -15° had their heads at the far end of the model.
+#[test]
+fn heads_farther_from_their_line_than_bolts_are_long_are_told() {
+    let pattern = |angle: f64| {
+        let row = "\n[[bolt_pattern]]\nname = \"row\"\nline = [[1, 3], [8, 17]]\ncount = 4\nlength = 30.0\n\
+                   anchorage = \"grouted\"\nyoung = 200e9\narea = 4.9e-4\n";
+        format!("{BOLTED}{row}angle_deg = {angle:?}\n")
+    };
+    assert_eq!(told(&pattern(-15.0)), Vec::<String>::new());
+    let said = told(&pattern(-165.0));
+    let wanted = "bolt_pattern[0]: 4 of 4 heads lie up to 40.376 m from `line`, farther than the bolts are long (30 m)";
+    assert!(said.iter().any(|line| line.starts_with(wanted) && line.contains("turn `angle_deg` by 180°")), "{said:?}");
+}
+
+#[test]
+fn distributions_are_doubted_as_values_are() {
+    let random = |key: &str, rest: &str| {
+        told(&format!("{BOLTED}\n[ensemble]\nsamples = 8\n[[random]]\nkey = \"{key}\"\n{rest}\n"))
+    };
+    let friction = "joint_law.fault.friction_deg";
+    for (key, rest, wanted) in [
+        (friction, "distribution = \"normal\"\nmean = 32\nsd = 2", ""),
+        (friction, "distribution = \"normal\"\nmean = 0.6249\nsd = 0.05\nof = \"tangent\"", ""),
+        ("joint_law.fault.cohesion", "distribution = \"uniform\"\nleast = 0\nmost = 80e3", ""),
+        (friction, "distribution = \"normal\"\nmean = 0.6249\nsd = 0.05", "0.6249 is the tangent of 32.0°"),
+        (friction, "distribution = \"normal\"\nmean = 32\nsd = 2\nof = \"tangent\"", "random[0].mean"),
+        ("joint_law.fault.cohesion", "distribution = \"lognormal\"\nmean = 40\nsd = 8", "looks like kPa: write 40000"),
+        ("bolt[0].yield_force", "distribution = \"uniform\"\nleast = 1000\nmost = 1500", "looks like kN"),
+    ] {
+        let said = random(key, rest);
+        let fits = if wanted.is_empty() { said.is_empty() } else { said.iter().any(|line| line.contains(wanted)) };
+        assert!(fits, "{key} {rest}: {said:?}");
+    }
+}
+
 #[test]
 fn errors_say_what_is_usual() {
     let said = told(&BOLTED.replace("young = 195e9", "young = -195e9"));

@@ -10,12 +10,12 @@ use super::{law_of, points};
 
 /// Ends that one message names.
 const NAMED: usize = 5;
-/// Default of `domain.extend_ends` over the diagonal of the box of the rock: 0.7 mm of a section that fills a sheet A4
-/// (diagonal 364 mm). Maps show well-defined points to 1/30 inch, 0.85 mm (United States National Map Accuracy
-/// Standards, 1947).
-const JOIN_RATIO: f64 = 2e-3;
-/// Default of `domain.near_ends` over the default of `domain.extend_ends`.
-const NEAR_RATIO: f64 = 10.0;
+/// Default of `domain.extend_ends` over the diagonal of the box of the rock: 1/30 inch on a section that fills a sheet
+/// A4 (diagonal 364 mm). Maps show well-defined points this exactly (United States National Map Accuracy Standards,
+/// 1947).
+const JOIN_RATIO: f64 = 0.85 / 364.0;
+/// Default of `domain.near_ends` over the diagonal.
+const NEAR_RATIO: f64 = 0.02;
 
 /// An end of a joint in the rock, near the outline or another joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,9 +39,8 @@ pub struct TraceEnd {
 /// The distances of a case for ends, where the box of its rock has a diagonal (m): of the drawing alone, so that they
 /// are the same for every mesh.
 pub(super) fn distances(case: &Case, diagonal: f64, tolerance: f64) -> EndDistances {
-    let usual = JOIN_RATIO * diagonal;
-    let join = case.domain.extend_ends.unwrap_or(usual);
-    EndDistances { tolerance, join, list: case.domain.near_ends.unwrap_or(NEAR_RATIO * usual).max(join) }
+    let join = case.domain.extend_ends.unwrap_or(JOIN_RATIO * diagonal);
+    EndDistances { tolerance, join, list: case.domain.near_ends.unwrap_or(NEAR_RATIO * diagonal).max(join) }
 }
 
 /// Joins the ends of joints that almost meet a line to it; the list has those with others near a line, but for the ends

@@ -28,7 +28,11 @@ pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
         let first = case.bolts.len();
         for (number, station) in stations(&key, pattern)?.into_iter().enumerate() {
             let bolt = bolt(&key, case, pattern, number, station)?;
-            told.origins.insert(format!("bolt[{}]", case.bolts.len()), key.to_string());
+            let made = format!("bolt[{}]", case.bolts.len());
+            for points in [".points", ".points[0]", ".points[1]"] {
+                told.origins.insert(format!("{made}{points}"), key.field("line").to_string());
+            }
+            told.origins.insert(made, key.to_string());
             case.bolts.push(bolt);
         }
         if let Some(name) = &pattern.name {
@@ -98,12 +102,38 @@ fn bar(pattern: &BoltPattern) -> Bolt {
     }
 }
 
+/// Doubts about patterns whose heads lie farther from their line than a bolt reaches: their direction leaves the rock
+/// there, and the face that it enters is another one.
+pub fn far_heads(case: &Case) -> impl Iterator<Item = String> {
+    case.bolt_patterns.iter().enumerate().filter_map(|(k, pattern)| {
+        let key = Key::root().field("bolt_pattern").index(k);
+        let stations = stations(&key, pattern).ok()?;
+        let heads = stations.iter().filter_map(|&station| head(case, pattern, station).0);
+        let far: Vec<f64> = heads.map(f64::abs).filter(|&distance| distance > pattern.length).collect();
+        let farthest = far.iter().copied().reduce(f64::max)?;
+        Some(format!(
+            "{key}: {} of {} heads lie up to {farthest:.3} m from `line`, farther than the bolts are long ({} m): at {}° \
+             they enter the rock through another face; turn `angle_deg` by 180°, or move `line` to the face",
+            far.len(),
+            stations.len(),
+            pattern.length,
+            pattern.angle_deg
+        ))
+    })
+}
+
+/// Distance (m) from a point of the head line, along the direction of the bolts, to the nearest point at which the rock
+/// begins; and that direction.
+fn head(case: &Case, pattern: &BoltPattern, station: [f64; 2]) -> (Option<f64>, [f64; 2]) {
+    let (sin, cos) = libm::sincos(pattern.angle_deg.to_radians());
+    let entries = entries(case, station, [cos, sin]);
+    (entries.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs())), [cos, sin])
+}
+
 /// The bolt through a point of the head line: its head is the nearest point at which the rock begins along its
 /// direction.
 fn bolt(key: &Key, case: &Case, pattern: &BoltPattern, number: usize, station: [f64; 2]) -> Result<Bolt, Invalid> {
-    let (sin, cos) = libm::sincos(pattern.angle_deg.to_radians());
-    let entries = entries(case, station, [cos, sin]);
-    let nearest = entries.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let (nearest, [cos, sin]) = head(case, pattern, station);
     let Some(along) = nearest else {
         let message = format!(
             "bolt {} through ({}, {}) m at {}° meets no face of the rock; move the line or turn `angle_deg`",

@@ -10,6 +10,7 @@ mod joint_sets;
 pub mod motions;
 mod tessellation;
 
+pub use bolts::far_heads;
 pub use cuts::LAW as CUT_LAW;
 
 use std::collections::BTreeMap;

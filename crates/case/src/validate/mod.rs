@@ -226,7 +226,7 @@ fn domain(key: &Key, domain: &Domain) -> Check {
         }
     }
     optional(key, "snap_tolerance", domain.snap_tolerance, Range::above(0.0).to(1e3), "m", "1e-6 of the model's size")?;
-    optional(key, "extend_ends", domain.extend_ends, Range::from(0.0).to(1e3), "m", "0.002 of the model's size")?;
+    optional(key, "extend_ends", domain.extend_ends, Range::from(0.0).to(1e3), "m", "0.0023 of the model's size")?;
     optional(key, "near_ends", domain.near_ends, Range::from(0.0).to(1e3), "m", "0.02 of the model's size")
 }
 

@@ -33,6 +33,9 @@ const TAKES_PART: f64 = 0.1;
 const FAR_AT_REST: f64 = 10.0;
 /// The same over the height of the model.
 const FAR: f64 = 0.01;
+/// Way of a push over the height of the model, at most: columns of soft rock that lean farther fall by that, and not
+/// because friction took another path.
+const LEAN: f64 = 1e-4;
 
 /// Why a trial gave no verdict.
 pub enum Stop {
@@ -83,6 +86,8 @@ pub struct Base {
     yields: bool,
     /// Displacement (m) beyond which a slope that rests has moved far.
     far: f64,
+    /// Displacement (m) at which a push ends.
+    pushed: f64,
 }
 
 impl Base {
@@ -93,7 +98,7 @@ impl Base {
         let yields = simulation.case().yields();
         let (height, _) = height_and_gravity(&simulation);
         let far = (FAR_AT_REST * given_way(&simulation)).min(FAR * height);
-        Self { simulation, scales, free, yields, far }
+        Self { simulation, scales, free, yields, far, pushed: far.min(LEAN * height) }
     }
 
     /// Area (m²) of all blocks without a support; where each has one, of all that can move.
@@ -156,8 +161,8 @@ impl Base {
         self.follow(blank, simulation, Some(&fall), interrupt)
     }
 
-    /// Pushes a slope that has come to rest in a trial, until it has moved far, but for a `time` (s) at most; lets it
-    /// go from there, and follows it until it rests again.
+    /// Pushes a slope that has come to rest in a trial, until it has moved some way, but for a `time` (s) at most; lets
+    /// it go from there, and follows it until it rests again.
     pub fn push(
         &self,
         (trial, mut simulation): (Trial, Simulation),
@@ -174,7 +179,7 @@ impl Base {
         simulation.drive().arrive();
         act(&mut simulation, gravity + push);
         let mut left = simulation.steps_in(time);
-        while left > 0 && self.moving().all(|b| moved_between([&from, &simulation], b) < self.far) {
+        while left > 0 && self.moving().all(|b| moved_between([&from, &simulation], b) < self.pushed) {
             window(&mut simulation, 1, |_| (), interrupt)?.map_err(Stop::Failed)?;
             left -= 1;
         }
