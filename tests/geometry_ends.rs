@@ -11,9 +11,13 @@ fn square() -> Vec<Point> {
 
 /// Joins the ends of traces in a square of 10 m.
 fn join(traces: &mut [Vec<Point>]) -> Vec<NearEnd> {
-    let outlines: Vec<[Point; 2]> = polygon::sides(&square()).map(|(a, b)| [a, b]).collect();
+    join_in(&square(), traces)
+}
+
+fn join_in(outline: &[Point], traces: &mut [Vec<Point>]) -> Vec<NearEnd> {
+    let outlines: Vec<[Point; 2]> = polygon::sides(outline).map(|(a, b)| [a, b]).collect();
     let mut lines: Vec<&mut Vec<Point>> = traces.iter_mut().collect();
-    join_ends(&outlines, &mut lines, &DISTANCES, |p| polygon::contains(&square(), p)).expect("few lines")
+    join_ends(&outlines, &mut lines, &DISTANCES, |p| polygon::contains(outline, p)).expect("few lines")
 }
 
 fn line(points: &[[f64; 2]]) -> Vec<Point> {
@@ -100,16 +104,18 @@ fn both_ends_of_a_short_trace_are_joined() {
 /// A plane drawn to the toe whose end lies in the ground below it: the nearest point is ground in front of the toe.
 #[test]
 fn an_end_beside_a_corner_of_the_outline_goes_to_the_corner() {
-    for end in [[9.97, 0.001], [9.999, 0.08], [9.92, 0.03]] {
-        let mut traces = [line(&[[0.0, 5.0], end])];
-        assert_eq!(changes(&join(&mut traces)), [(EndChange::Extended, EndLine::Outline)]);
-        assert_eq!(traces[0].last(), Some(&Point::new(10.0, 0.0)), "{end:?}");
+    let slope = line(&[[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [12.0, 10.0], [10.0, 5.0], [0.0, 5.0]]);
+    let from = [20.0, 9.0];
+    for end in [[9.999, 4.999], [9.95, 4.95], [9.98, 4.92], [10.01, 4.95]] {
+        let mut traces = [line(&[from, end])];
+        assert_eq!(changes(&join_in(&slope, &mut traces)), [(EndChange::Extended, EndLine::Outline)]);
+        assert_eq!(traces[0].last(), Some(&Point::new(10.0, 5.0)), "{end:?}");
     }
-    // The trace's own line meets the outline nearer than the corner; another trace lies nearer than the corner.
-    let mut traces = [line(&[[0.0, 0.09], [9.99, 0.09]])];
-    join(&mut traces);
-    assert_eq!(traces[0][1], Point::new(10.0, 0.09));
-    let mut traces = [line(&[[0.0, 0.05], [10.0, 0.05]]), line(&[[5.0, 5.0], [9.95, 0.06]])];
-    join(&mut traces);
-    assert!((traces[1][1] - Point::new(10.0, 0.0)).norm() > 0.04, "{:?}", traces[1]);
+    // Too far from the corner; above it, the line itself meets the face.
+    for (end, meets) in [([9.8, 4.99], [9.8, 5.0]), ([10.04, 5.05], [10.016, 5.0406])] {
+        let mut traces = [line(&[from, end])];
+        join_in(&slope, &mut traces);
+        assert!((traces[0][traces[0].len() - 1] - Point::from(meets)).norm() < 0.05, "{:?}", traces[0]);
+        assert!(traces[0].iter().all(|p| (p - Point::new(10.0, 5.0)).norm() > 0.01), "{:?}", traces[0]);
+    }
 }

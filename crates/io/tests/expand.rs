@@ -254,7 +254,7 @@ fn heads_of_a_bolt_pattern_lie_on_the_face() {
     let long = loaded(&case("[[11, 3], [8, 9]]", "count = 4").replace("length = 3.0", "length = 40.0"));
     let invalid = Simulation::new(long.case.clone()).map(|_| ()).unwrap_err();
     let error = long.source.locate(&invalid.key, &invalid.message).to_string();
-    assert!(error.starts_with("case.toml:6: bolt_pattern[0].line: "), "{error}");
+    assert!(error.starts_with("case.toml:8: bolt_pattern[0].line: "), "{error}");
 }
 
 /// Half of the rock hangs on a cut: it sinks by its elasticity alone, of the order ρ·g·L²/E = 2500·9.81·100/1e9 m, and
