@@ -3,7 +3,6 @@
 
 use serde_json::Value;
 
-use crate::expand::far_heads;
 use crate::key::Key;
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{Case, Output, RandomOf};
@@ -198,7 +197,6 @@ pub fn doubts(case: &Case) -> Vec<String> {
     });
     found.extend(random_values(case));
     found.extend(intervals(case));
-    found.extend(far_heads(case));
     found
 }
 

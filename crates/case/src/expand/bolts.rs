@@ -112,8 +112,8 @@ pub fn far_heads(case: &Case) -> impl Iterator<Item = String> {
         let far: Vec<f64> = heads.map(f64::abs).filter(|&distance| distance > pattern.length).collect();
         let farthest = far.iter().copied().reduce(f64::max)?;
         Some(format!(
-            "{key}: {} of {} heads lie up to {farthest:.3} m from `line`, farther than the bolts are long ({} m): at {}° \
-             they enter the rock through another face; turn `angle_deg` by 180°, or move `line` to the face",
+            "{key}: {} of {} heads lie up to {farthest:.3} m from `line`, farther than the bolts are long ({} m): at \
+             {}° they enter the rock through another face; turn `angle_deg` by 180°, or move `line` to the face",
             far.len(),
             stations.len(),
             pattern.length,

@@ -10,12 +10,12 @@ mod joint_sets;
 pub mod motions;
 mod tessellation;
 
-pub use bolts::far_heads;
 pub use cuts::LAW as CUT_LAW;
 
 use std::collections::BTreeMap;
 
 use super::key::Key;
+use super::plausible;
 use super::validate::Invalid;
 use super::validate::checks::{Check, fail};
 use super::{Case, InSitu, JointSet, StageKind};
@@ -44,6 +44,11 @@ impl Case {
         bolts::expand(self, &mut told)?;
         motions::expand(self)?;
         Ok(told)
+    }
+
+    /// Warnings about values that are unusual, and about bolts whose heads lie where nobody drew them.
+    pub fn doubts(&self) -> Vec<String> {
+        plausible::doubts(self).into_iter().chain(bolts::far_heads(self)).collect()
     }
 
     /// `duration_max` becomes the duration of a static stage.

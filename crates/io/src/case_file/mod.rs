@@ -12,7 +12,7 @@ use super::record_file::{self, Record, Wanted};
 use enmm::cosimulation::Cosimulation;
 use enmm::model::case::key::Key;
 use enmm::model::case::record::RecordOrigin;
-use enmm::model::case::{BaseMotionKind, Case, Invalid, JointTrace, Orientations, RecordKeys, plausible};
+use enmm::model::case::{BaseMotionKind, Case, Invalid, JointTrace, Orientations, RecordKeys};
 
 /// Largest text of a case (bytes): some 100 000 traces, which take two seconds to read. Files of geometry and records
 /// are read far faster.
@@ -47,7 +47,7 @@ impl LoadedCase {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
         // Old names were reported where the case was read; its values may be new.
         Self::checked(case, source, Vec::new())
-            .map(|loaded| Self { warnings: plausible::doubts(&loaded.typed), ..loaded })
+            .map(|loaded| Self { warnings: loaded.typed.doubts(), ..loaded })
     }
 
     fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
@@ -58,7 +58,7 @@ impl LoadedCase {
         source.origins = told.origins;
         let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
         case.validate().map_err(located)?;
-        warnings.extend(plausible::doubts(&typed));
+        warnings.extend(typed.doubts());
         let hash = case.fingerprint().map_err(located)?;
         warnings.extend(case.ground_motions().into_iter().flat_map(|motion| motion.warnings));
         for pond in case.ponds() {
