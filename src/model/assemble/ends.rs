@@ -11,8 +11,8 @@ use super::{law_of, points};
 /// Ends that one message names.
 const NAMED: usize = 5;
 /// Default of `domain.extend_ends` over the diagonal of the box of the rock: 0.85 mm, 1/30 inch, on a section that
-/// fills a sheet A4 (diagonal 364 mm). Maps show well-defined points this exactly (United States National Map Accuracy Standards,
-/// 1947).
+/// fills a sheet A4 (diagonal 364 mm). Maps show well-defined points this exactly (United States National Map Accuracy
+/// Standards, 1947).
 const JOIN_RATIO: f64 = 2.335e-3;
 /// Default of `domain.near_ends` over the diagonal.
 const NEAR_RATIO: f64 = 0.02;
