@@ -46,8 +46,7 @@ impl LoadedCase {
     pub fn of(case: Case, file: &str) -> Result<Self, CaseError> {
         let source = CaseSource { file: file.to_owned(), ..CaseSource::default() };
         // Old names were reported where the case was read; its values may be new.
-        Self::checked(case, source, Vec::new())
-            .map(|loaded| Self { warnings: loaded.typed.doubts(), ..loaded })
+        Self::checked(case, source, Vec::new()).map(|loaded| Self { warnings: loaded.typed.doubts(), ..loaded })
     }
 
     fn checked(mut case: Case, mut source: CaseSource, mut warnings: Vec<String>) -> Result<Self, CaseError> {
