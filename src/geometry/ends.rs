@@ -189,7 +189,7 @@ struct Found {
     ahead: Option<(f64, EndLine)>,
     behind: Option<(f64, EndLine)>,
     beside: Option<(f64, EndLine, Point)>,
-    /// The nearest corner of the outline within the distance that ends are joined over.
+    /// The nearest corner of the outline within the distance that ends are joined over, where the outline lies beside.
     corner: Option<(f64, Point)>,
 }
 
@@ -233,9 +233,8 @@ impl Lines {
             return Some((near(gap, line, along(-gap), EndChange::Trimmed), vec![along(-gap)]));
         }
         // A plane that daylights at the toe ends there, on whichever side of it the drawing has its end.
-        let is_beside_outline = beside.is_some_and(|(_, line, _)| line == EndLine::Outline);
-        let is_there = |distance: f64| is_beside_outline && distance < join && distance < gap(ahead);
-        let at_corner = corner.filter(|corner| is_there(corner.0)).map(|(gap, at)| (gap, EndLine::Outline, at));
+        let corner = corner.filter(|(distance, _)| *distance < join.min(gap(ahead)));
+        let at_corner = corner.map(|(distance, place)| (distance, EndLine::Outline, place));
         let beside = at_corner.or(beside).filter(|(beside, ..)| *beside < list);
         let is_near = beside.is_some_and(|(beside, ..)| beside < join);
         let goes_there = |line: EndLine| is_near && beside.is_some_and(|(_, other, _)| other == line);
@@ -279,7 +278,9 @@ impl Lines {
             about.retain(|stretch| !crossed.contains(&stretch.line) && !end.crosses(stretch, tolerance));
             found.beside = beside(end, &about);
             if reach >= list || found.beside.is_some_and(|(distance, ..)| distance <= reach) {
-                found.corner = self.corner(end, points)?;
+                if let Some((_, EndLine::Outline, _)) = found.beside {
+                    found.corner = self.corner(end, points)?;
+                }
                 return Ok(Some(found));
             }
             reach = (2.0 * reach).min(list);
