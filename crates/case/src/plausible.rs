@@ -217,7 +217,7 @@ fn doubt(case: &Case, key: &str, pattern: &str, value: f64) -> Option<String> {
 fn random_values(case: &Case) -> impl Iterator<Item = String> {
     case.random.iter().enumerate().filter_map(|(k, random)| {
         let middle = random.least.zip(random.most).map(|(least, most)| 0.5 * (least + most));
-        let given = [("mean", random.mean), ("mode", random.mode), ("most", middle)];
+        let given = [(".mean", random.mean), (".mode", random.mode), (", middle", middle)];
         let (name, variable) = given.into_iter().find_map(|(name, value)| Some((name, value?)))?;
         let value = match random.of {
             RandomOf::Value => variable,
@@ -225,7 +225,7 @@ fn random_values(case: &Case) -> impl Iterator<Item = String> {
             RandomOf::Log10 => libm::pow(10.0, variable),
         };
         let doubt = doubt(case, &random.key, &pattern_of(&random.key), value)?;
-        Some(format!("random[{k}].{name}: {} {doubt}", random.key))
+        Some(format!("random[{k}]{name}: {} {doubt}", random.key))
     })
 }
 
