@@ -113,6 +113,17 @@ fn long_the_wedge_has_the_factors_that_its_comment_says() {
     }
 }
 
+/// The search begins next to the factor, where all bars yield already; it goes down to where they do not.
+#[test]
+fn bars_of_the_wedge_yield_first_between_two_factors_close_to_each_other() {
+    let found =
+        factor_of_safety(&case("plane_slide", &text("plane_slide")), &ReductionOptions::default(), &mut |_, _| {});
+    let found = found.unwrap_or_else(|e| panic!("{e}"));
+    let [whole, yielded] = found.first_yield().expect("bars that yield");
+    let factor = found.factor().expect("a factor");
+    assert!(yielded / whole < 1.021 && yielded < factor && whole > 0.9 * factor, "{whole} {yielded} {factor}");
+}
+
 /// Strength reduction of the columns without dilation stays below limit analysis, which lets joints dilate.
 #[test]
 fn the_columns_bear_less_than_limit_analysis_allows() {

@@ -69,6 +69,11 @@ impl Factor {
         }
     }
 
+    /// The factor where equilibrium ends; none where that lies beyond the range.
+    pub fn found(&self) -> Option<f64> {
+        matches!(self, Self::Found(_)).then(|| self.value())
+    }
+
     /// The factor where equilibrium ends; infinite when it does not, zero when there is none.
     pub fn value(&self) -> f64 {
         match *self {

@@ -1,12 +1,23 @@
-//! Which factors are tried: steps away from the start until the limit lies between two of them, then thirds.
+//! Which factors are tried: a pair about the factor that limit analysis foretells, wider and wider steps away from it
+//! until the limit lies between two of them, then thirds.
 
 use super::{End, Verdict};
 
-/// Ratio of neighbouring trials until the limit is bracketed.
+/// Ratio of neighbouring trials where nothing foretells the limit, and the greatest one.
 pub const STRIDE: f64 = 1.5;
+/// Share of the first pair's ratio by which it begins below what limit analysis foretells: blocks that give way have a
+/// little less than rigid ones.
+const BELOW: f64 = 0.8;
 
-/// The first pair of factors: the given limits, or the strength of the case and less.
-pub fn start(low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
+/// The first pair of factors: the given limits, a pair about a factor that is foretold within some ratio, or the
+/// strength of the case and less.
+pub fn start(limits: [Option<f64>; 2], foretold: Option<[f64; 2]>, range: [f64; 2]) -> [f64; 2] {
+    let [low, high] = limits;
+    let foretold = foretold.filter(|[factor, _]| (range[0]..range[1]).contains(factor));
+    if let ([None, None], Some([factor, ratio])) = (limits, foretold) {
+        let first = (factor * libm::pow(ratio, -BELOW)).max(range[0]);
+        return [first, (first * ratio).min(range[1])];
+    }
     let first = low.unwrap_or_else(|| 1f64.clamp(range[0], (high.unwrap_or(range[1]) / STRIDE).max(range[0])));
     let second = high.unwrap_or(STRIDE * first);
     [first, second.clamp(first, range[1]).max(first)]
@@ -15,17 +26,21 @@ pub fn start(low: Option<f64>, high: Option<f64>, range: [f64; 2]) -> [f64; 2] {
 /// A search in progress.
 #[derive(Debug, Clone)]
 pub struct Search {
-    range: [f64; 2],
+    /// Least and greatest factor.
+    pub range: [f64; 2],
     tolerance: f64,
     /// The first pair, until it is tried.
     start: Option<[f64; 2]>,
+    /// Ratio of the next trial beyond all that were made.
+    stride: f64,
     tried: Vec<(f64, Verdict)>,
 }
 
 impl Search {
     /// Begins with a pair of factors; keeps within `range`.
     pub fn new(start: [f64; 2], range: [f64; 2], tolerance: f64) -> Self {
-        Self { range, tolerance, start: Some(start), tried: Vec::new() }
+        let stride = (start[1] / start[0]).clamp(1.0 + tolerance, STRIDE);
+        Self { range, tolerance, start: Some(start), stride, tried: Vec::new() }
     }
 
     /// A search in the same range to the same tolerance that begins with another pair.
@@ -56,7 +71,7 @@ impl Search {
     pub fn expected(&self) -> usize {
         let width = match self.bracket() {
             [Some(low), Some(high)] => high / low,
-            _ => STRIDE,
+            _ => self.stride,
         };
         let thirds = libm::log((libm::log(width) / libm::log1p(self.tolerance)).max(1.0)) / libm::log(3.0);
         let pair = if self.start.is_some() { 2 } else { 0 };
@@ -71,9 +86,16 @@ impl Search {
         match self.bracket() {
             [Some(low), Some(high)] if high / low - 1.0 > self.tolerance => Some(thirds(low, high, self.tolerance)),
             [Some(_), Some(_)] | [None, None] => None,
-            [Some(low), None] => beyond(low, STRIDE, |f| f.min(self.range[1])),
-            [None, Some(high)] => beyond(high, 1.0 / STRIDE, |f| f.max(self.range[0])),
+            [Some(low), None] => beyond(low, (low * self.lengthen()).min(self.range[1])),
+            [None, Some(high)] => beyond(high, (high / self.lengthen()).max(self.range[0])),
         }
+    }
+
+    /// The ratio of the next step away from all trials; each is the square of the one before, up to the greatest.
+    fn lengthen(&mut self) -> f64 {
+        let stride = self.stride;
+        self.stride = (stride * stride).min(STRIDE);
+        stride
     }
 
     /// How a search that is over ended.
@@ -95,11 +117,9 @@ fn thirds(low: f64, high: f64, tolerance: f64) -> (f64, Option<f64>) {
     (low * libm::cbrt(ratio), Some(low * libm::cbrt(ratio).powi(2)))
 }
 
-/// Two factors further on; none at the limit.
-fn beyond(from: f64, stride: f64, limit: impl Fn(f64) -> f64) -> Option<(f64, Option<f64>)> {
-    let a = limit(from * stride);
-    let b = limit(a * stride);
-    (a != from).then_some((a, (b != a).then_some(b)))
+/// The factor further on; none at the limit.
+fn beyond(from: f64, next: f64) -> Option<(f64, Option<f64>)> {
+    (next != from).then_some((next, None))
 }
 
 #[cfg(test)]
@@ -157,11 +177,30 @@ mod tests {
         assert_eq!(find(3.0, [1.0, 2.0], [1.0, 2.0]).2, End::StableThroughout);
     }
 
+    /// However wrong the first pair is.
+    #[test]
+    fn every_start_finds_the_limit() {
+        for k in 0..120 {
+            let first = 0.1 * 1.04f64.powi(k);
+            for ratio in [1.005, 1.02, 1.3] {
+                let (count, bracket, end) = find(1.1, [first, first * ratio], [0.05, 20.0]);
+                let [Some(low), Some(high)] = bracket else { panic!("{first}: {bracket:?}") };
+                assert!(low <= 1.1 && 1.1 < high && high / low - 1.0 <= 5e-3 + 1e-12, "{first}: {low} {high}");
+                assert!(end == End::Found && count <= 24, "{first}, {ratio}: {count} trials");
+            }
+        }
+        assert_eq!(find(1.1, start([None; 2], Some([1.1, 1.005]), [0.05, 20.0]), [0.05, 20.0]).0, 2);
+    }
+
     #[test]
     fn the_start_lies_in_the_range() {
-        assert_eq!(start(None, None, [0.05, 20.0]), [1.0, 1.5]);
-        assert_eq!(start(Some(1.2), Some(1.3), [1.2, 1.3]), [1.2, 1.3]);
-        assert_eq!(start(Some(2.0), None, [2.0, 20.0]), [2.0, 3.0]);
-        assert_eq!(start(None, Some(0.5), [0.05, 0.5]), [0.5 / 1.5, 0.5]);
+        let range = [0.05, 20.0];
+        assert_eq!(start([None; 2], None, range), [1.0, 1.5]);
+        assert_eq!(start([Some(1.2), Some(1.3)], Some([2.0, 1.01]), [1.2, 1.3]), [1.2, 1.3]);
+        assert_eq!(start([Some(2.0), None], None, [2.0, 20.0]), [2.0, 3.0]);
+        assert_eq!(start([None, Some(0.5)], None, [0.05, 0.5]), [0.5 / 1.5, 0.5]);
+        assert_eq!(start([None; 2], Some([100.0, 1.01]), range), [1.0, 1.5]);
+        let [first, second] = start([None; 2], Some([1.1, 1.005]), range);
+        assert!(first < 1.1 && 1.1 < second && (second / first - 1.005).abs() < 1e-12);
     }
 }

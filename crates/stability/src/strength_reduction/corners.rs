@@ -4,7 +4,7 @@ use super::bracket::{self, Search};
 use super::series::Series;
 use super::setting::Setting;
 use super::slip::height_and_gravity;
-use super::{ReductionOptions, Trial, Verdict};
+use super::{Trial, Verdict};
 use crate::corners::{COUNTS, CarryingCorner, CornerContact, corner_contacts};
 use enmm::model::Simulation;
 use enmm::model::case::CornerContacts;
@@ -62,13 +62,17 @@ pub fn without(corners: &[CarryingCorner], setting: &Setting) -> Setting {
     Setting { left_out, ..setting.clone() }
 }
 
-/// Where a search begins that cannot end above another: at its own beginning, and at the greatest stable factor of
-/// that.
-pub fn below(held: &Series, search: &Search, options: &ReductionOptions, range: [f64; 2]) -> Search {
+/// Where a search begins that cannot end above another: about what limit analysis foretells where corners carry
+/// nothing, if that is less than the greatest stable factor of the other, else at the strength of the case or below
+/// it, and at that factor.
+pub fn below(held: &Series, search: &Search, limits: [Option<f64>; 2], foretold: Option<[f64; 2]>) -> Search {
+    let range = search.range;
     let top = held.low.unwrap_or(range[0]);
-    let [first, _] = bracket::start(options.low, options.high, range);
+    let foretold = foretold.filter(|[factor, _]| *factor < top);
+    let [first, second] = bracket::start(limits, foretold, range);
     let first = if first < top { first } else { (top / bracket::STRIDE).max(range[0]) };
-    let mut search = search.again([first, top]);
+    let second = if foretold.is_some() { second.min(top) } else { top };
+    let mut search = search.again([first, second]);
     if let Some(high) = held.high {
         search.note(high, Verdict::Unstable);
     }

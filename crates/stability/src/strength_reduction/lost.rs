@@ -5,14 +5,11 @@ use super::bracket::Search;
 use super::series::{Series, Trials};
 use super::setting::{Geometry, Setting};
 
-/// Displacement over that of the slope at rest up to which its real geometry is that of the drawing.
-const AS_DRAWN: f64 = 2.0;
-
 /// Looks for the limit in the real geometry, beginning with the bracket of the drawing; none where that was real, or
 /// has no stable trial.
 pub fn look(trials: &mut Trials, drawn: &Series, setting: &Setting, search: &Search) -> Option<Series> {
     let low = drawn.low.filter(|_| setting.geometry == Geometry::Drawn)?;
-    let is_near = drawn.trial(Some(low)).is_some_and(|t| t.displacement <= AS_DRAWN * trials.base.given_way());
+    let is_near = drawn.trial(Some(low)).is_some_and(|t| trials.base.is_near(t));
     let start = match (is_near, drawn.high) {
         (true, None) => return None,
         (true, Some(high)) => [high; 2],

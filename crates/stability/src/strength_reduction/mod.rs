@@ -15,7 +15,7 @@ mod slip;
 mod toppling;
 mod trial;
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use enmm::geometry::{Point, Vector};
 use enmm::model::StepError;
@@ -285,8 +285,11 @@ pub fn factor_of_safety(
 ) -> Result<Reduction, ReductionError> {
     let mut rest = reference::settle(case, options)?;
     let base = trial::Base::new(rest.simulation, options.tolerance);
+    let opinion = SecondOpinion::of(case, options);
+    let limits = [options.low, options.high];
     let range = [options.low.unwrap_or(FACTOR_RANGE[0]), options.high.unwrap_or(FACTOR_RANGE[1])];
-    let search = bracket::Search::new(bracket::start(options.low, options.high, range), range, options.tolerance);
+    let start = bracket::start(limits, opinion.foretold(options.tolerance), range);
+    let search = bracket::Search::new(start, range, options.tolerance);
     let geometry = if case.yields() { Geometry::Real } else { Geometry::Drawn };
     let setting = Setting { geometry, left_out: Vec::new() };
     let mut trials = Trials { base: &base, interrupt: options.interrupt, hear, made: 0 };
@@ -298,17 +301,19 @@ pub fn factor_of_safety(
         (held, lost, None, setting)
     } else {
         let broken = corners::without(&carrying, &setting);
-        let mut series = trials.series(corners::below(&held, &search, options, range), &broken);
+        let foretold = opinion.foretold_without_corners(options.tolerance);
+        let mut series = trials.series(corners::below(&held, &search, limits, foretold), &broken);
         series.take_top(&held);
         let lost_too = lost::look(&mut trials, &series, &broken, &search);
         let hold = CornersHold { corners: carrying, series: lost.unwrap_or(held) };
         let decide = hold.decide(&series, lost_too.as_ref());
         (series, lost_too, decide.then_some(hold), broken)
     };
-    let (series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
+    let (mut series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
+    trials.down_to_whole_bars(&mut series, &setting, range);
     let mechanism = toppling::mechanism(&base, &series);
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
-    let SecondOpinion { bound, bracket, ends } = SecondOpinion::of(case, &series.end);
+    let SecondOpinion { bound, bracket, ends } = opinion;
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
     let free_area = base.free_area();
     let mut reduction = Reduction {
@@ -341,9 +346,9 @@ struct SecondOpinion {
 }
 
 impl SecondOpinion {
-    fn of(case: &Case, end: &End) -> Self {
+    fn of(case: &Case, options: &ReductionOptions) -> Self {
         let none = |why: String| Self { bound: Err(why), bracket: None, ends: None };
-        if *end == End::Interrupted {
+        if options.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed)) {
             return none("interrupted".to_owned());
         }
         if case.yields() {
@@ -362,6 +367,31 @@ impl SecondOpinion {
             Err(error) => none(error.to_string()),
         }
     }
+
+    /// The factor that trials may find, and the ratio within which: of rigid blocks the estimate without normality, or
+    /// the bound where that is none; of rock that yields the lower bound.
+    fn foretold(&self, tolerance: f64) -> Option<[f64; 2]> {
+        if let Some(bracket) = &self.bracket {
+            return Some(near(bracket.lower.found()?, bracket.upper.found()?, tolerance));
+        }
+        let bound = self.bound.as_ref().ok()?;
+        let most = bound.level_tops.factor.found()?;
+        let estimate = bound.estimate.as_ref().and_then(|estimate| estimate.factor.found());
+        Some(near(estimate.map_or(most, |estimate| estimate.min(most)), most, tolerance))
+    }
+
+    /// The same where corners carry nothing.
+    fn foretold_without_corners(&self, tolerance: f64) -> Option<[f64; 2]> {
+        let released = self.bound.as_ref().ok()?.released.as_ref()?.collapse.factor.found()?;
+        Some(near(released, released, tolerance))
+    }
+}
+
+/// A factor and the ratio within which it is known: the tolerance, or four times as much where another one differs
+/// from it.
+fn near(factor: f64, other: f64, tolerance: f64) -> [f64; 2] {
+    let agree = (factor / other - 1.0).abs() <= tolerance;
+    [factor, if agree { 1.0 + tolerance } else { 1.0 + 4.0 * tolerance }]
 }
 
 /// The bracket of the first meshes on which it is close, else of the last that have a solution.

@@ -4,9 +4,12 @@ use std::sync::atomic::AtomicBool;
 
 use super::bracket::Search;
 use super::setting::Setting;
-use super::trial::{Base, Outcome, Stop};
+use super::trial::{Base, Outcome, Rest, Stop};
 use super::{End, Progress, Trial, Verdict};
 use enmm::model::Simulation;
+
+/// Ratio, less 1, of the factors between which bars yield first.
+const FIRST_YIELD: f64 = 0.02;
 
 /// Trials in one setting, and what they have found.
 #[derive(Debug, Clone)]
@@ -67,17 +70,21 @@ impl Trials<'_> {
     /// Goes on with a search in a setting until it is over.
     pub fn series(&mut self, search: Search, setting: &Setting) -> Series {
         let (base, interrupt) = (self.base, self.interrupt);
-        self.series_of(search, &|factor| base.run(factor, setting, interrupt))
+        self.series_of(search, &|factor, rests| base.run(factor, setting, rests, interrupt))
     }
 
-    /// The same with trials of another kind. They are made in pairs, which two threads can share.
-    pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64) -> Outcome + Sync)) -> Series {
+    /// The same with trials of another kind, which may go on from the slope at rest at the greatest factor so far. They
+    /// are made in pairs, which two threads can share.
+    pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64, Option<&Rest>) -> Outcome + Sync)) -> Series {
         let (mut trials, mut end) = (Vec::<Trial>::new(), None);
-        let (mut stable, mut unstable) = (None::<(f64, Simulation)>, None::<(f64, Simulation)>);
+        let (mut stable, mut unstable) = (None::<Rest>, None::<Rest>);
         while let (None, Some((a, b))) = (&end, search.next()) {
+            // Where blocks have slid to their rest, friction has more to spare than a slide from the start leaves it.
+            let at_rest = |rest: &&Rest| trials.iter().any(|t| t.factor == rest.factor && self.base.is_near(t));
+            let rests = stable.as_ref().filter(at_rest);
             let both = match b {
-                Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a), || run(b))).into_iter().collect(),
-                None => vec![run(a)],
+                Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a, rests), || run(b, rests))).into_iter().collect(),
+                None => vec![run(a, rests)],
             };
             for outcome in both {
                 match outcome {
@@ -98,9 +105,27 @@ impl Trials<'_> {
         }
         trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         let [low, high] = search.bracket();
-        let stable = stable.filter(|(factor, _)| Some(*factor) == low).map(|(_, simulation)| simulation);
-        let unstable = unstable.map(|(_, simulation)| simulation);
+        let stable = stable.filter(|rest| Some(rest.factor) == low).map(|rest| rest.simulation);
+        let unstable = unstable.map(|end| end.simulation);
         Series { trials, low, high, end: end.unwrap_or_else(|| search.end()), stable, unstable }
+    }
+
+    /// Goes on below a series in whose stable trials bars yield, until their first yield lies between two trials.
+    pub fn down_to_whole_bars(&mut self, series: &mut Series, setting: &Setting, range: [f64; 2]) {
+        let mut stable = series.trials.iter().filter(|trial| trial.verdict == Verdict::Stable);
+        let Some(least) = stable.next().filter(|trial| trial.bars_yield).map(|trial| trial.factor) else { return };
+        let (base, interrupt) = (self.base, self.interrupt);
+        let mut search = Search::new([least / (1.0 + FIRST_YIELD); 2], range, FIRST_YIELD);
+        search.note(least, Verdict::Unstable);
+        while let Some((a, b)) = search.next().filter(|(a, _)| *a >= range[0]) {
+            for factor in std::iter::once(a).chain(b) {
+                let Ok((trial, _)) = self.one(&|| base.run(factor, setting, None, interrupt)) else { return };
+                let is_whole = trial.verdict == Verdict::Stable && !trial.bars_yield;
+                search.note(factor, if is_whole { Verdict::Stable } else { Verdict::Unstable });
+                series.trials.push(trial);
+            }
+        }
+        series.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     }
 
     /// Makes one trial.
@@ -129,8 +154,8 @@ impl From<Stop> for End {
 }
 
 /// Keeps a model if its factor is better than that of the one that is kept.
-fn keep(kept: &mut Option<(f64, Simulation)>, factor: f64, simulation: Simulation, better: impl Fn(f64) -> bool) {
-    if kept.as_ref().is_none_or(|(kept, _)| better(*kept)) {
-        *kept = Some((factor, simulation));
+fn keep(kept: &mut Option<Rest>, factor: f64, simulation: Simulation, better: impl Fn(f64) -> bool) {
+    if kept.as_ref().is_none_or(|kept| better(kept.factor)) {
+        *kept = Some(Rest { factor, simulation });
     }
 }

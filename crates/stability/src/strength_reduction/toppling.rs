@@ -15,8 +15,8 @@ use super::{End, FailingBlock, Reason, Trial, Verdict};
 const NUDGE: f64 = 0.01;
 /// Nudges of a trial.
 const NUDGES: usize = 3;
-/// First steps down where a nudge makes the slope fail: the most by which nudges lower a factor, and a part of it.
-const STEPS_DOWN: [f64; 2] = [1.04, 1.01];
+/// First step down where a nudge makes the slope fail: nudges lower a factor by 0 to 3.5 %.
+const STEP_DOWN: f64 = 1.01;
 
 /// Elements over the width of a block that turns from which its factor hardly depends on the mesh.
 const ELEMENTS: f64 = 3.0;
@@ -62,9 +62,9 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
             return (series, None);
         }
     }
-    let mut down = search.again(STEPS_DOWN.map(|step| low / step));
+    let mut down = search.again([low / STEP_DOWN; 2]);
     down.note(low, Verdict::Unstable);
-    let found = trials.series_of(down, &|factor| nudged(base.run(factor, setting, interrupt)));
+    let found = trials.series_of(down, &|factor, _| nudged(base.run(factor, setting, None, interrupt)));
     let Series { trials, low, high, end, stable, unstable } = found;
     replace(&mut series, trials, unstable);
     // Trials above the bracket rested, but nobody has nudged them.

@@ -37,6 +37,9 @@ const FAR: f64 = 0.01;
 /// because friction took another path.
 const LEAN: f64 = 1e-4;
 
+/// Displacement over that of the slope at rest up to which its real geometry is that of the drawing.
+const AS_DRAWN: f64 = 2.0;
+
 /// Why a trial gave no verdict.
 pub enum Stop {
     /// The caller stopped it.
@@ -45,20 +48,32 @@ pub enum Stop {
     Failed(StepError),
 }
 
+/// A slope at rest at the end of a stable trial.
+#[derive(Debug, Clone)]
+pub struct Rest {
+    /// F.
+    pub factor: f64,
+    /// The model.
+    pub simulation: Simulation,
+}
+
 /// A trial with the model at its end.
 pub type Outcome = Result<(Trial, Simulation), Stop>;
 
-/// A fall of strength to that of a trial, from [`Fall::DEPTH`] times that, by equal ratios in equal times, so that
-/// joints take up their load one after the other and nothing is thrown (Eq. 60a).
+/// A fall of strength to that of a trial, by equal ratios in equal times, so that joints take up their load one after
+/// the other and nothing is thrown (Eq. 60a).
 struct Fall {
     /// Strength factor at its end.
     end: f64,
+    /// The one at its beginning over that.
+    depth: f64,
     /// Duration (s).
     time: f64,
 }
 
 impl Fall {
-    /// Strength at the beginning of a fall over that at its end.
+    /// Strength at the beginning over that at the end, where a slope comes from its rest at [`super::HELD`] times the
+    /// strength.
     const DEPTH: f64 = 10.0;
 
     /// Sets the strength of the next step of a model, `since` (s) after the beginning.
@@ -67,7 +82,7 @@ impl Fall {
             return;
         }
         let (now, dt) = (simulation.time(), simulation.model().dt);
-        let strength = |since: f64| self.end * libm::pow(Self::DEPTH, 1.0 - (since / self.time).clamp(0.0, 1.0));
+        let strength = |since: f64| self.end * libm::pow(self.depth, 1.0 - (since / self.time).clamp(0.0, 1.0));
         let drive = simulation.drive();
         (drive.from.strength_factor, drive.to.strength_factor) = (strength(since), strength(since + dt));
         (drive.since, drive.until) = (now, now + dt);
@@ -113,8 +128,13 @@ impl Base {
         if free > 0.0 { free } else { area(&|_| true) }
     }
 
+    /// Whether a slope has hardly moved in a trial: so little that its real geometry is that of the drawing.
+    pub fn is_near(&self, trial: &Trial) -> bool {
+        trial.displacement <= AS_DRAWN * self.given_way()
+    }
+
     /// Largest displacement (m) in which the slope has come to rest.
-    pub fn given_way(&self) -> f64 {
+    fn given_way(&self) -> f64 {
         given_way(&self.simulation)
     }
 
@@ -151,18 +171,24 @@ impl Base {
         few
     }
 
-    /// Makes one trial in a setting; returns the model at its end as well.
-    pub fn run(&self, factor: f64, setting: &Setting, interrupt: Option<&AtomicBool>) -> Outcome {
-        let mut simulation = self.simulation.clone();
-        setting.act(&mut simulation);
+    /// Makes one trial in a setting; returns the model at its end as well. It goes on from a slope that `rests` in that
+    /// setting at a lower factor, where there is one.
+    pub fn run(&self, factor: f64, setting: &Setting, rests: Option<&Rest>, interrupt: Option<&AtomicBool>) -> Outcome {
+        let (mut simulation, depth) = match rests.filter(|rest| rest.factor < factor) {
+            Some(rest) => (rest.simulation.clone(), factor / rest.factor),
+            None => (self.simulation.clone(), Fall::DEPTH),
+        };
+        if depth == Fall::DEPTH {
+            setting.act(&mut simulation);
+        }
         simulation.drive().arrive();
         let blank = Trial { factor, geometry: setting.geometry, ..Trial::default() };
-        let fall = Fall { end: 1.0 / factor, time: self.scales.ramp };
-        self.follow(blank, simulation, Some(&fall), interrupt)
+        let time = (self.scales.ramp * libm::log10(depth)).max(self.scales.window);
+        self.follow(blank, simulation, Some(&Fall { end: 1.0 / factor, depth, time }), interrupt)
     }
 
-    /// Pushes a slope that has come to rest in a trial, until it has moved some way, but for a `time` (s) at most; lets
-    /// it go from there, and follows it until it rests again.
+    /// Pushes a slope that has come to rest in a trial, until it has moved some way or moves no more, but for a `time`
+    /// (s) at most; lets it go from there, and follows it until it rests again.
     pub fn push(
         &self,
         (trial, mut simulation): (Trial, Simulation),
@@ -178,10 +204,17 @@ impl Base {
         };
         simulation.drive().arrive();
         act(&mut simulation, gravity + push);
-        let mut left = simulation.steps_in(time);
-        while left > 0 && self.moving().all(|b| moved_between([&from, &simulation], b) < self.pushed) {
+        let (mut left, steps) = (simulation.steps_in(time), simulation.steps_in(self.scales.window));
+        let mut before = simulation.clone();
+        while left > 0 && self.farthest([&from, &simulation]) < self.pushed {
             window(&mut simulation, 1, |_| (), interrupt)?.map_err(Stop::Failed)?;
             left -= 1;
+            if left % steps == 0 {
+                if self.farthest([&before, &simulation]) <= self.scales.still_speed * self.scales.window {
+                    break;
+                }
+                before = simulation.clone();
+            }
         }
         act(&mut simulation, gravity);
         simulation.arrest();
@@ -225,7 +258,7 @@ impl Base {
             let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
             let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
             let sample = self.sample(&simulation, &last, &first, way, &few);
-            residual = last.ledger.residual_relative();
+            residual = open_since(fall.is_none().then_some(&first), &last.ledger);
             samples.push(Sample { time: simulation.time() - start, ..sample });
             judged = judge::judge(&samples, &scales);
         }
@@ -246,7 +279,7 @@ impl Base {
             is_far: end.displacement > self.far && !stretches(&simulation),
             bars_yield: yields(&simulation),
             steps: begun_as.steps + simulation.state().step - begun,
-            ledger_residual: residual,
+            ledger_residual: worse(residual, begun_as.ledger_residual),
             wall: begun_as.wall + clock.elapsed().as_secs_f64(),
             ..begun_as
         };
@@ -280,6 +313,11 @@ impl Base {
             released: energy(first) - energy(&report.ledger),
             ..Sample::default()
         }
+    }
+
+    /// Largest displacement (m) of a block between two states.
+    fn farthest(&self, states: [&Simulation; 2]) -> f64 {
+        self.moving().map(|b| moved_between(states, b)).fold(0.0, f64::max)
     }
 
     /// Largest displacement (m) of a block's covers since the trial began.
@@ -383,6 +421,17 @@ fn stretches(simulation: &Simulation) -> bool {
 fn moved_between(states: [&Simulation; 2], block: BlockId) -> f64 {
     let [begin, now] = states.map(|simulation| &simulation.state().displacement);
     states[1].model().covers.covers_of(block).map(|i| (now[i] - begin[i]).norm()).fold(0.0, f64::max)
+}
+
+/// Share of the largest term that a ledger leaves open, since the `first` one of a slope that was let go from a push:
+/// works are half a step ahead of displacements, and that half step is lost then.
+fn open_since(first: Option<&Ledger>, ledger: &Ledger) -> f64 {
+    (ledger.residual() - first.map_or(0.0, Ledger::residual)) / ledger.largest().max(f64::MIN_POSITIVE)
+}
+
+/// The number with the greater magnitude.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.abs() > b.abs() { a } else { b }
 }
 
 /// Largest displacement (m) in which a slope has come to rest.
