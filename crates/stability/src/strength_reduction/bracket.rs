@@ -1,5 +1,5 @@
-//! Which factors are tried: a pair about the factor that limit analysis foretells, wider and wider steps away from it
-//! until the limit lies between two of them, then thirds.
+//! Which factors are tried: one far below, a pair about the factor that limit analysis foretells, wider and wider steps
+//! away from it until the limit lies between two of them, then thirds.
 
 use super::{End, Verdict};
 
@@ -46,6 +46,17 @@ impl Search {
     /// A search in the same range to the same tolerance that begins with another pair.
     pub fn again(&self, start: [f64; 2]) -> Self {
         Self::new(start, self.range, self.tolerance)
+    }
+
+    /// A factor below all that are tried first, by the greatest stride; none beyond the range.
+    pub fn lead(&self) -> Option<f64> {
+        self.start.map(|[first, _]| first / STRIDE).filter(|lead| *lead >= self.range[0])
+    }
+
+    /// Goes down from a factor that is not stable, instead of beginning above it.
+    pub fn begin_below(&mut self, factor: f64) {
+        self.start = None;
+        self.note(factor, Verdict::Unstable);
     }
 
     /// Number of verdicts so far.

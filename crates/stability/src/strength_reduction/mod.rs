@@ -292,7 +292,7 @@ pub fn factor_of_safety(
     let search = bracket::Search::new(start, range, options.tolerance);
     let geometry = if case.yields() { Geometry::Real } else { Geometry::Drawn };
     let setting = Setting { geometry, left_out: Vec::new() };
-    let mut trials = Trials { base: &base, interrupt: options.interrupt, hear, made: 0 };
+    let mut trials = Trials { base: &base, interrupt: options.interrupt, hear, made: 0, start: None };
     let held = trials.series(search.clone(), &setting);
     let lost = lost::look(&mut trials, &held, &setting, &search);
     let both: Vec<&Series> = std::iter::once(&held).chain(&lost).collect();

@@ -1,12 +1,14 @@
 //! A series of trials in one setting, until the limit lies between two of them.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::bracket::Search;
-use super::setting::Setting;
+use super::setting::{Geometry, Setting};
 use super::trial::{Base, Outcome, Rest, Stop};
 use super::{End, Progress, Trial, Verdict};
 use enmm::model::Simulation;
+use enmm::model::tables::{BlockId, SideId};
 
 /// Ratio, less 1, of the factors between which bars yield first.
 const FIRST_YIELD: f64 = 0.02;
@@ -64,27 +66,59 @@ pub struct Trials<'a> {
     pub hear: &'a mut (dyn FnMut(&Trial, Progress) + Send),
     /// Trials so far.
     pub made: usize,
+    /// Where the trials of a setting begin.
+    pub start: Option<Start>,
+}
+
+/// Where the trials of a setting begin: at the rest of a slope that has hardly moved at a factor far below theirs, or,
+/// where there is none, at that of the common start.
+pub struct Start {
+    left_out: Vec<(BlockId, SideId)>,
+    rest: Option<Arc<Rest>>,
 }
 
 impl Trials<'_> {
     /// Goes on with a search in a setting until it is over.
-    pub fn series(&mut self, search: Search, setting: &Setting) -> Series {
-        let (base, interrupt) = (self.base, self.interrupt);
-        self.series_of(search, &|factor, rests| base.run(factor, setting, rests, interrupt))
+    pub fn series(&mut self, mut search: Search, setting: &Setting) -> Series {
+        let lead = self.lead(&mut search, setting);
+        let (base, interrupt, rest) = (self.base, self.interrupt, self.rest(setting));
+        let mut series = self.series_of(search, &|factor| base.run(factor, setting, rest.as_deref(), interrupt));
+        series.trials.splice(0..0, lead);
+        series
     }
 
-    /// The same with trials of another kind, which may go on from the slope at rest at the greatest factor so far. They
-    /// are made in pairs, which two threads can share.
-    pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64, Option<&Rest>) -> Outcome + Sync)) -> Series {
+    /// The slope at rest from which the trials of a setting go on.
+    pub fn rest(&self, setting: &Setting) -> Option<Arc<Rest>> {
+        self.start.as_ref().filter(|start| start.left_out == setting.left_out)?.rest.clone()
+    }
+
+    /// Looks for a start of the trials of a setting, far below those that a search begins with; if the slope fails
+    /// there, the search begins below. It may lie in either geometry, since a slope that has hardly moved is as drawn.
+    fn lead(&mut self, search: &mut Search, setting: &Setting) -> Option<Trial> {
+        if self.start.as_ref().is_some_and(|start| start.left_out == setting.left_out) {
+            return None;
+        }
+        let factor = search.lead()?;
+        let real = Setting { geometry: Geometry::Real, ..setting.clone() };
+        let (base, interrupt) = (self.base, self.interrupt);
+        let (trial, simulation) = self.one(&|| base.run(factor, &real, None, interrupt)).ok()?;
+        let rests = trial.verdict == Verdict::Stable;
+        if !rests {
+            search.begin_below(factor);
+        }
+        let rest = (rests && base.is_near(&trial)).then(|| Arc::new(Rest { factor, simulation }));
+        self.start = Some(Start { left_out: setting.left_out.clone(), rest });
+        Some(trial)
+    }
+
+    /// Goes on with a search by trials of any kind, which are made in pairs, so that two threads can share them.
+    pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64) -> Outcome + Sync)) -> Series {
         let (mut trials, mut end) = (Vec::<Trial>::new(), None);
         let (mut stable, mut unstable) = (None::<Rest>, None::<Rest>);
         while let (None, Some((a, b))) = (&end, search.next()) {
-            // Where blocks have slid to their rest, friction has more to spare than a slide from the start leaves it.
-            let at_rest = |rest: &&Rest| trials.iter().any(|t| t.factor == rest.factor && self.base.is_near(t));
-            let rests = stable.as_ref().filter(at_rest);
             let both = match b {
-                Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a, rests), || run(b, rests))).into_iter().collect(),
-                None => vec![run(a, rests)],
+                Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a), || run(b))).into_iter().collect(),
+                None => vec![run(a)],
             };
             for outcome in both {
                 match outcome {
@@ -110,16 +144,18 @@ impl Trials<'_> {
         Series { trials, low, high, end: end.unwrap_or_else(|| search.end()), stable, unstable }
     }
 
-    /// Goes on below a series in whose stable trials bars yield, until their first yield lies between two trials.
+    /// Goes down from the least stable trial of a series in which bars yield, until their first yield lies between two.
     pub fn down_to_whole_bars(&mut self, series: &mut Series, setting: &Setting, range: [f64; 2]) {
         let mut stable = series.trials.iter().filter(|trial| trial.verdict == Verdict::Stable);
-        let Some(least) = stable.next().filter(|trial| trial.bars_yield).map(|trial| trial.factor) else { return };
-        let (base, interrupt) = (self.base, self.interrupt);
+        let Some(least) = stable.find(|trial| trial.bars_yield).map(|trial| trial.factor) else { return };
+        let (base, interrupt, rest) = (self.base, self.interrupt, self.rest(setting));
         let mut search = Search::new([least / (1.0 + FIRST_YIELD); 2], range, FIRST_YIELD);
         search.note(least, Verdict::Unstable);
         while let Some((a, b)) = search.next().filter(|(a, _)| *a >= range[0]) {
             for factor in std::iter::once(a).chain(b) {
-                let Ok((trial, _)) = self.one(&|| base.run(factor, setting, None, interrupt)) else { return };
+                let Ok((trial, _)) = self.one(&|| base.run(factor, setting, rest.as_deref(), interrupt)) else {
+                    return;
+                };
                 let is_whole = trial.verdict == Verdict::Stable && !trial.bars_yield;
                 search.note(factor, if is_whole { Verdict::Stable } else { Verdict::Unstable });
                 series.trials.push(trial);

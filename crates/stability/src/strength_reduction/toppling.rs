@@ -64,7 +64,8 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
     }
     let mut down = search.again([low / STEP_DOWN; 2]);
     down.note(low, Verdict::Unstable);
-    let found = trials.series_of(down, &|factor, _| nudged(base.run(factor, setting, None, interrupt)));
+    let rest = trials.rest(setting);
+    let found = trials.series_of(down, &|factor| nudged(base.run(factor, setting, rest.as_deref(), interrupt)));
     let Series { trials, low, high, end, stable, unstable } = found;
     replace(&mut series, trials, unstable);
     // Trials above the bracket rested, but nobody has nudged them.

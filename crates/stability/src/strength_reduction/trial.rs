@@ -171,16 +171,13 @@ impl Base {
         few
     }
 
-    /// Makes one trial in a setting; returns the model at its end as well. It goes on from a slope that `rests` in that
-    /// setting at a lower factor, where there is one.
+    /// Makes one trial in a setting; returns the model at its end as well. It goes on from a slope that `rests` at a
+    /// lower factor without the same contacts, where there is one.
     pub fn run(&self, factor: f64, setting: &Setting, rests: Option<&Rest>, interrupt: Option<&AtomicBool>) -> Outcome {
-        let (mut simulation, depth) = match rests.filter(|rest| rest.factor < factor) {
-            Some(rest) => (rest.simulation.clone(), factor / rest.factor),
-            None => (self.simulation.clone(), Fall::DEPTH),
-        };
-        if depth == Fall::DEPTH {
-            setting.act(&mut simulation);
-        }
+        let rests = rests.filter(|rest| rest.factor < factor);
+        let depth = rests.map_or(Fall::DEPTH, |rest| factor / rest.factor);
+        let mut simulation = rests.map_or(&self.simulation, |rest| &rest.simulation).clone();
+        setting.act(&mut simulation);
         simulation.drive().arrive();
         let blank = Trial { factor, geometry: setting.geometry, ..Trial::default() };
         let time = (self.scales.ramp * libm::log10(depth)).max(self.scales.window);
