@@ -204,6 +204,16 @@ mod tests {
     }
 
     #[test]
+    fn a_search_whose_lead_is_not_stable_goes_down_from_it() {
+        let mut search = Search::new([3.0, 3.015], [0.05, 20.0], 5e-3);
+        let lead = search.lead().expect("a lead");
+        assert_eq!(lead, 2.0);
+        search.begin_below(lead);
+        assert_eq!(search.next(), Some((2.0 / (3.015 / 3.0), None)));
+        assert_eq!(Search::new([1.0, 1.5], [0.9, 20.0], 5e-3).lead(), None, "below what is asked for");
+    }
+
+    #[test]
     fn the_start_lies_in_the_range() {
         let range = [0.05, 20.0];
         assert_eq!(start([None; 2], None, range), [1.0, 1.5]);

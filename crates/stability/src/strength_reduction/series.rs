@@ -94,8 +94,9 @@ impl Trials<'_> {
 
     /// Looks for a start of the trials of a setting, far below those that a search begins with; if the slope fails
     /// there, the search begins below. It may lie in either geometry, since a slope that has hardly moved is as drawn.
+    /// Rock that yields is judged by its motion in the whole fall.
     fn lead(&mut self, search: &mut Search, setting: &Setting) -> Option<Trial> {
-        if self.start.as_ref().is_some_and(|start| start.left_out == setting.left_out) {
+        if self.base.yields || self.start.as_ref().is_some_and(|start| start.left_out == setting.left_out) {
             return None;
         }
         let factor = search.lead()?;

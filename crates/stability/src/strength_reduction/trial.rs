@@ -98,7 +98,7 @@ pub struct Base {
     /// Whether each block can move.
     free: Vec<bool>,
     /// Whether rock yields: what it flows is no slip of joints.
-    yields: bool,
+    pub yields: bool,
     /// Displacement (m) beyond which a slope that rests has moved far.
     far: f64,
     /// Displacement (m) at which a push ends.
