@@ -267,11 +267,11 @@ fn a_grain_that_creeps_makes_no_verdict_alternate() {
 }
 
 /// What stands beside the associated bound is never above it, over slopes of all kinds. Forces need not agree: of
-/// the first 20, 17 have an estimate, which is no promise, but most must.
+/// the first 20, 17 have an estimate, which is no promise, but most must. The quick form has eight.
 #[test]
 fn estimates_and_bare_bounds_are_below_the_associated_bound() {
     let mut without = 0;
-    let seeds = by_extent([0..20, 0..20, 0..66]);
+    let seeds = by_extent([0..8, 0..20, 0..66]);
     for seed in seeds.clone() {
         let (kind, slope, friction_deg) = slope(seed);
         let found = bound(&slope.case(friction_deg, None)).unwrap_or_else(|e| panic!("slope {seed}, {kind}: {e}"));

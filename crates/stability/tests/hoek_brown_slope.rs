@@ -48,8 +48,8 @@ fn the_factor_of_a_slope_is_that_of_hammah_and_others() {
 }
 
 /// A joint as strong as the rock changes nothing, and a weak layer takes the slope down: both bounds with it and the
-/// factor between them, as far as 0.5 % of the bracket leaves open. The full form has the factor with the flat layer
-/// alone, the quick form none.
+/// factor between them, as far as 0.5 % of the bracket leaves open. The quick form has the bounds of the flat layer
+/// alone, the full one the factor with it as well.
 #[test]
 fn long_a_weak_layer_in_the_rock_mass_takes_the_slope_down() {
     let layer =
@@ -62,7 +62,8 @@ fn long_a_weak_layer_in_the_rock_mass_takes_the_slope_down() {
     let strong = layer("friction_deg = 40\ncohesion = 2e5", "[[0, 9.2], [20.6, 9.4]]");
     let flat = layer("friction_deg = 15\ncohesion = 5e3", "[[0, 7], [23, 7]]");
     let steep = layer("friction_deg = 20\ncohesion = 5e3", "[[5, 15], [22, 8]]");
-    for (joints, is_weak) in [(&strong, false), (&flat, true), (&steep, true)] {
+    let layers = [(&flat, true), (&strong, false), (&steep, true)];
+    for (joints, is_weak) in layers.into_iter().take(by_extent([1, 3, 3])) {
         let case = slope(10.0, 20.0, joints);
         let [lower, upper] = bounds(&case);
         println!("{lower} to {upper}: {joints}");

@@ -41,7 +41,7 @@ fn search(case: &Case, low: Option<f64>, high: Option<f64>) -> Reduction {
 #[test]
 fn every_search_finds_the_same_factor() {
     let mut random = Random::new(72);
-    for k in 0..by_extent([3, 6, 20]) {
+    for k in 0..by_extent([1, 6, 20]) {
         let case = slope(&mut random);
         let found = search(&case, None, None);
         let factor = found.factor().unwrap_or_else(|| panic!("slope {k}: {:?}", found.end));
