@@ -53,10 +53,9 @@ impl Search {
         self.start.map(|[first, _]| first / STRIDE).filter(|lead| *lead >= self.range[0])
     }
 
-    /// Goes down from a factor that is not stable, instead of beginning above it.
-    pub fn begin_below(&mut self, factor: f64) {
-        self.start = None;
-        self.note(factor, Verdict::Unstable);
+    /// Begins at a factor and below it, instead of above.
+    pub fn begin_at(&mut self, factor: f64) {
+        self.start = Some([(factor / self.stride).max(self.range[0]), factor]);
     }
 
     /// Number of verdicts so far.
@@ -204,12 +203,12 @@ mod tests {
     }
 
     #[test]
-    fn a_search_whose_lead_is_not_stable_goes_down_from_it() {
+    fn a_search_whose_lead_is_not_stable_begins_there() {
         let mut search = Search::new([3.0, 3.015], [0.05, 20.0], 5e-3);
         let lead = search.lead().expect("a lead");
         assert_eq!(lead, 2.0);
-        search.begin_below(lead);
-        assert_eq!(search.next(), Some((2.0 / (3.015 / 3.0), None)));
+        search.begin_at(lead);
+        assert_eq!(search.next(), Some((2.0 / (3.015 / 3.0), Some(2.0))));
         assert_eq!(Search::new([1.0, 1.5], [0.9, 20.0], 5e-3).lead(), None, "below what is asked for");
     }
 

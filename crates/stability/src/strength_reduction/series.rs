@@ -83,7 +83,8 @@ impl Trials<'_> {
         let lead = self.lead(&mut search, setting);
         let (base, interrupt, rest) = (self.base, self.interrupt, self.rest(setting));
         let mut series = self.series_of(search, &|factor| base.run(factor, setting, rest.as_deref(), interrupt));
-        series.trials.splice(0..0, lead);
+        series.trials.extend(lead);
+        series.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         series
     }
 
@@ -93,8 +94,8 @@ impl Trials<'_> {
     }
 
     /// Looks for a start of the trials of a setting, far below those that a search begins with; if the slope fails
-    /// there, the search begins below. It may lie in either geometry, since a slope that has hardly moved is as drawn.
-    /// Rock that yields is judged by its motion in the whole fall.
+    /// there, the search begins there as well. It lies in the real geometry: a slope that has hardly moved is as drawn.
+    /// Rock that yields is judged by its motion in the whole fall. Returns the trial, if it is stable.
     fn lead(&mut self, search: &mut Search, setting: &Setting) -> Option<Trial> {
         if self.base.yields || self.start.as_ref().is_some_and(|start| start.left_out == setting.left_out) {
             return None;
@@ -103,13 +104,13 @@ impl Trials<'_> {
         let real = Setting { geometry: Geometry::Real, ..setting.clone() };
         let (base, interrupt) = (self.base, self.interrupt);
         let (trial, simulation) = self.one(&|| base.run(factor, &real, None, interrupt)).ok()?;
-        let rests = trial.verdict == Verdict::Stable;
-        if !rests {
-            search.begin_below(factor);
+        let is_stable = trial.verdict == Verdict::Stable;
+        if !is_stable {
+            search.begin_at(factor);
         }
-        let rest = (rests && base.is_near(&trial)).then(|| Arc::new(Rest { factor, simulation }));
+        let rest = (is_stable && base.is_near(&trial)).then(|| Arc::new(Rest { factor, simulation }));
         self.start = Some(Start { left_out: setting.left_out.clone(), rest });
-        Some(trial)
+        is_stable.then_some(trial)
     }
 
     /// Goes on with a search by trials of any kind, which are made in pairs, so that two threads can share them.
