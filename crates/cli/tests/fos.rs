@@ -231,3 +231,22 @@ fn a_stage_that_draws_the_water_down_gives_the_dry_factor() {
     let refused = place.enmm(&["check", "case.toml", "--set", "stage[0].water.level=1"]);
     assert!(refused.status == Some(2) && refused.stderr.contains("first stage"), "{refused:?}");
 }
+
+/// A slope in soil with two elements over its height locks: it rests at its strength over 1.05, where no rock can.
+#[test]
+fn a_factor_above_the_upper_bound_is_at_most_that_and_has_a_status_of_its_own() {
+    let sides = "[[fix]]\nedge = [[0, -5], [40, -5]]\n[[fix]]\nedge = [[40, -5], [40, 10]]\naxes = \"x\"\n\
+                 [[fix]]\nedge = [[0, -5], [0, 0]]\naxes = \"x\"\n";
+    let place = Place::with(&format!(
+        "title = \"soil\"\n[domain]\noutline = [[0, -5], [40, -5], [40, 10], [20, 10], [10, 0], [0, 0]]\n[mesh]\n\
+         size = 5\n[rock.soil]\ndensity = 2000\nyoung = 100e6\npoisson = 0.3\nfriction_deg = 20\ncohesion = 10e3\n\
+         tension = 0\n{sides}[[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration_max = 20.0\n"
+    ));
+    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--no-pictures", "--low", "1", "--high", "1.05"]);
+    assert_eq!(answer.status, Some(5), "{answer:?}");
+    assert!(answer.stdout.contains("at most 0.91") && answer.stderr.contains("too coarse"), "{answer:?}");
+    let found = json(&place.path("out/fos.json"));
+    assert!(found["factor_of_safety"].is_null(), "{found}");
+    let most = found["at_most"].as_f64().expect("a number");
+    assert!((0.88..0.93).contains(&most) && found["bound"]["upper"]["factor"].as_f64() == Some(most), "{most}");
+}
