@@ -16,7 +16,13 @@ pub fn start(limits: [Option<f64>; 2], foretold: Option<[f64; 2]>, range: [f64; 
     let foretold = foretold.filter(|[factor, _]| (range[0]..range[1]).contains(factor));
     if let ([None, None], Some([factor, ratio])) = (limits, foretold) {
         let first = (factor * libm::pow(ratio, -BELOW)).max(range[0]);
-        return [first, (first * ratio).min(range[1])];
+        let [first, second] = if first < 1.0 && 1.0 < first * ratio {
+            // Whether the slope stands at its own strength is found, however wide the bracket is.
+            if factor < 1.0 { [1.0 / ratio, 1.0] } else { [1.0, ratio] }
+        } else {
+            [first, first * ratio]
+        };
+        return [first, second.min(range[1])];
     }
     let first = low.unwrap_or_else(|| 1f64.clamp(range[0], (high.unwrap_or(range[1]) / STRIDE).max(range[0])));
     let second = high.unwrap_or(STRIDE * first);
@@ -220,6 +226,8 @@ mod tests {
         assert_eq!(start([Some(2.0), None], None, [2.0, 20.0]), [2.0, 3.0]);
         assert_eq!(start([None, Some(0.5)], None, [0.05, 0.5]), [0.5 / 1.5, 0.5]);
         assert_eq!(start([None; 2], Some([100.0, 1.01]), range), [1.0, 1.5]);
+        assert_eq!(start([None; 2], Some([1.01, 1.05]), range), [1.0, 1.05]);
+        assert_eq!(start([None; 2], Some([0.995, 1.05]), range), [1.0 / 1.05, 1.0]);
         let [first, second] = start([None; 2], Some([1.1, 1.005]), range);
         assert!(first < 1.1 && 1.1 < second && (second / first - 1.005).abs() < 1e-12);
     }
