@@ -23,7 +23,8 @@ fn words_of_cells(html: &str) -> String {
 #[test]
 fn all_results_of_a_case_are_printed_with_the_numbers_of_their_records() {
     let place = Place::with(&incline(0.65, NOTES));
-    for arguments in [&["run", "case.toml"][..], &["fos", "case.toml"], &["bound", "case.toml"]] {
+    let wide = ["fos", "case.toml", "--low", "0.5", "--high", "3"];
+    for arguments in [&["run", "case.toml"][..], &wide, &["bound", "case.toml"]] {
         assert_eq!(place.enmm(arguments).status, Some(0), "{arguments:?}");
     }
     let answer = place.enmm(&["report", "case", "--no-pdf"]);
@@ -35,7 +36,7 @@ fn all_results_of_a_case_are_printed_with_the_numbers_of_their_records() {
         numbers(&json(&place.path(name)), &mut known);
     }
     let shown: Vec<&str> = html.split("<data value=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
-    assert!(shown.len() > 40, "{}", shown.len());
+    assert!(shown.len() > 60, "{}", shown.len());
     for value in shown {
         assert!(known.contains(&value.parse().expect("a number")), "{value}");
     }
