@@ -16,13 +16,13 @@ pub fn start(limits: [Option<f64>; 2], foretold: Option<[f64; 2]>, range: [f64; 
     let foretold = foretold.filter(|[factor, _]| (range[0]..range[1]).contains(factor));
     if let ([None, None], Some([factor, ratio])) = (limits, foretold) {
         let first = (factor * libm::pow(ratio, -BELOW)).max(range[0]);
-        let [first, second] = if first < 1.0 && 1.0 < first * ratio {
-            // Whether the slope stands at its own strength is found, however wide the bracket is.
-            if factor < 1.0 { [1.0 / ratio, 1.0] } else { [1.0, ratio] }
-        } else {
-            [first, first * ratio]
+        let spans_one = first < 1.0 && 1.0 < first * ratio;
+        // Whether the slope stands at its own strength is found, however wide the bracket is.
+        return match (spans_one, factor < 1.0) {
+            (true, true) => [1.0 / ratio, 1.0],
+            (true, false) => [1.0, ratio],
+            (false, _) => [first, (first * ratio).min(range[1])],
         };
-        return [first, second.min(range[1])];
     }
     let first = low.unwrap_or_else(|| 1f64.clamp(range[0], (high.unwrap_or(range[1]) / STRIDE).max(range[0])));
     let second = high.unwrap_or(STRIDE * first);

@@ -116,7 +116,7 @@ impl Trials<'_> {
     /// Goes on with a search by trials of any kind, which are made in pairs, so that two threads can share them.
     pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64) -> Outcome + Sync)) -> Series {
         let (mut trials, mut end) = (Vec::<Trial>::new(), None);
-        let (mut stable, mut unstable) = (None::<Rest>, None::<Rest>);
+        let (mut stable, mut unstable) = (None::<(f64, Simulation)>, None::<(f64, Simulation)>);
         while let (None, Some((a, b))) = (&end, search.next()) {
             let both = match b {
                 Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a), || run(b))).into_iter().collect(),
@@ -141,8 +141,8 @@ impl Trials<'_> {
         }
         trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         let [low, high] = search.bracket();
-        let stable = stable.filter(|rest| Some(rest.factor) == low).map(|rest| rest.simulation);
-        let unstable = unstable.map(|end| end.simulation);
+        let stable = stable.filter(|(factor, _)| Some(*factor) == low).map(|(_, simulation)| simulation);
+        let unstable = unstable.map(|(_, simulation)| simulation);
         Series { trials, low, high, end: end.unwrap_or_else(|| search.end()), stable, unstable }
     }
 
@@ -192,8 +192,8 @@ impl From<Stop> for End {
 }
 
 /// Keeps a model if its factor is better than that of the one that is kept.
-fn keep(kept: &mut Option<Rest>, factor: f64, simulation: Simulation, better: impl Fn(f64) -> bool) {
-    if kept.as_ref().is_none_or(|kept| better(kept.factor)) {
-        *kept = Some(Rest { factor, simulation });
+fn keep(kept: &mut Option<(f64, Simulation)>, factor: f64, simulation: Simulation, better: impl Fn(f64) -> bool) {
+    if kept.as_ref().is_none_or(|(kept, _)| better(*kept)) {
+        *kept = Some((factor, simulation));
     }
 }

@@ -172,7 +172,7 @@ impl Base {
     }
 
     /// Makes one trial in a setting; returns the model at its end as well. It goes on from a slope that `rests` at a
-    /// lower factor without the same contacts, where there is one.
+    /// lower factor with the same contacts left out, where there is one.
     pub fn run(&self, factor: f64, setting: &Setting, rests: Option<&Rest>, interrupt: Option<&AtomicBool>) -> Outcome {
         let rests = rests.filter(|rest| rest.factor < factor);
         let depth = rests.map_or(Fall::DEPTH, |rest| factor / rest.factor);
