@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Directory for the results; default: the name of the case file, here.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Threads; default: all. Results do not depend on it.
+    /// Threads; default: as many as make steps shorter. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Checkpoint to continue from.

@@ -44,7 +44,7 @@ fn factor_of(case: &Case, options: &ReductionOptions) -> f64 {
 /// the bracket; rock that is ten times stiffer within 0.5 % of the softer one.
 #[test]
 fn the_factor_of_a_slope_in_soil_is_that_of_griffiths_and_lane() {
-    let angles = by_extent([&[0.0, 37.0][..], &[0.0, 37.0], &[0.0, 7.0, 20.0, 37.0, 52.0]]);
+    let angles = by_extent([&[37.0][..], &[0.0, 37.0], &[0.0, 7.0, 20.0, 37.0, 52.0]]);
     let mut sum = 0.0;
     for &angle in angles {
         let factors = [500.0, 5000.0].map(|stiffness| factor([10.0, angle], stiffness, 0.0));
@@ -69,7 +69,8 @@ fn the_factor_of_a_slope_below_water_is_that_of_griffiths_and_lane() {
         [found.lower.value(), found.upper.value()]
     };
     let light = bounds(&buoyant);
-    for (level, published, from) in [("12.0", 1.85, 1.78), ("3.0", 1.3, 1.25)] {
+    let levels = [("12.0", 1.85, 1.78), ("3.0", 1.3, 1.25)];
+    for (level, published, from) in levels.into_iter().take(by_extent([1, 2, 2])) {
         let (case, options) =
             (wet(level), ReductionOptions { low: Some(from), high: Some(from + 0.15), ..ReductionOptions::default() });
         let ([lower, upper], factor) = (bounds(&case), factor_of(&case, &options));

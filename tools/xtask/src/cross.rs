@@ -7,8 +7,8 @@ use crate::bits;
 use crate::counts::Counts;
 use crate::debian;
 use crate::emulator::Emulator;
-use crate::platform::{AARCH64_QUICK, Cross, Platform, WINDOWS_QUICK};
-use crate::repository::{self, Beside, Repository};
+use crate::platform::{Cross, Platform};
+use crate::repository::{self, Repository};
 use crate::venv::{self, Packages, succeeds};
 use crate::wheel;
 
@@ -27,8 +27,7 @@ const FMU_STEPS: &str = "50";
 /// Most bytes of an FMU for each platform.
 const FMU_SIZE_MAX: u64 = 8_000_000;
 
-/// Builds for a platform; with `--test` in `words` it then tests what it has built. `--quick` is the share of
-/// `cargo xtask test --all`.
+/// Builds for a platform; with `--test` in `words` it then tests what it has built.
 ///
 /// # Errors
 /// When the words are others, the machine lacks something, something does not build, or a test fails.
@@ -37,49 +36,25 @@ pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Resu
     match words {
         [] => build(repository, platform, cross).map(|_| ()),
         ["--test"] => test(repository, platform, cross),
-        ["--quick"] => {
-            repository.build(&["--workspace"])?;
-            let platform = if platform.is_windows() { &WINDOWS_QUICK } else { &AARCH64_QUICK };
-            bits::all_good(quick(repository, start_quick(repository, platform)?)?)
-        }
-        _ => Err(format!("usage: cargo xtask {} [--test or --quick]", platform.name)),
+        _ => Err(format!("usage: cargo xtask {} [--test]", platform.name)),
     }
 }
 
-/// A build for a platform by the profile of tests, and whether there is an emulator to run it.
-pub struct Quick {
-    platform: &'static Platform,
-    build: Beside,
-    runs: bool,
-}
-
-/// Starts to build libraries and program for a platform, or to check them where there is no emulator. None, with a
-/// message, where standard library or compiler are missing.
-///
-/// # Errors
-/// When cargo does not start.
-pub fn start_quick(repository: &Repository, platform: &'static Platform) -> Result<Option<Quick>, String> {
-    let purpose = purpose_of_tests(platform);
-    let Some(cross) = platform.cross.as_ref().filter(|cross| is_ready(cross, &purpose)) else { return Ok(None) };
-    let runs = has_emulator(cross, &purpose);
-    // It yields to the tests beside it.
-    let mut cargo = repository.command("nice");
-    cargo.arg(repository.cargo(&[]).get_program()).arg(if runs { "build" } else { "check" });
-    cargo.args(["--target", cross.triple]).args(wheel::packages()).envs(cross.settings.iter().copied());
-    cargo.env("CARGO_TARGET_DIR", platform.cargo(repository));
-    let build = repository::start(cargo, repository.target.join(format!("{}.txt", platform.name)))?;
-    Ok(Some(Quick { platform, build, runs }))
-}
-
-/// Compares quick results of that build, on its emulator, with the golden table, with those of FMUs and a rollback,
-/// and calls every function of the C library.
+/// Builds libraries and program for a platform by the profile of tests, compares quick results of that build, on its
+/// emulator, with the golden table, with those of FMUs and a rollback, and calls every function of the C library. Says
+/// what it leaves out where the machine lacks something.
 ///
 /// # Errors
 /// When something does not compile or does not run.
-pub fn quick(repository: &Repository, quick: Option<Quick>) -> Result<Counts, String> {
-    let Some(Quick { platform, build, runs }) = quick else { return Ok(Counts::default()) };
-    let Some(cross) = &platform.cross else { return Ok(Counts::default()) };
-    build.finish()?;
+pub fn quick(repository: &Repository, platform: &Platform) -> Result<Counts, String> {
+    let purpose = format!("tests for {}", platform.name);
+    let Some(cross) = platform.cross.as_ref().filter(|cross| is_ready(cross, &purpose)) else {
+        return Ok(Counts::default());
+    };
+    let runs = has_emulator(cross, &purpose);
+    let mut cargo = repository.cargo(&[if runs { "build" } else { "check" }, "--target", cross.triple]);
+    cargo.args(wheel::packages()).envs(cross.settings.iter().copied());
+    repository::run(cargo.env("CARGO_TARGET_DIR", platform.cargo(repository)))?;
     if !runs {
         return Ok(Counts::default());
     }
@@ -91,18 +66,6 @@ pub fn quick(repository: &Repository, quick: Option<Quick>) -> Result<Counts, St
         .try_for_each(|name| platform.strip(repository, &built.join(name), &shipped.join(name)))?;
     place.c_library()?;
     bits::elsewhere(repository, platform, &place.emulator, &place.compile(FMU_HOST, &[])?)
-}
-
-/// Installs standard library, compiler and emulator of a platform, where rustup and Debian's packages can provide them.
-pub fn install(platform: &Platform) {
-    let Some(cross) = &platform.cross else { return };
-    let purpose = purpose_of_tests(platform);
-    provide_compiler(cross, &purpose);
-    provide_emulator(cross, &purpose);
-}
-
-fn purpose_of_tests(platform: &Platform) -> String {
-    format!("tests for {}", platform.name)
 }
 
 fn provide_compiler(cross: &Cross, purpose: &str) {

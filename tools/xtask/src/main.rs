@@ -31,8 +31,10 @@ usage: cargo xtask TASK
 
   test             what a newcomer and every commit runs: format, build, tests, hosts in C and C++,
                    ctypes, FMPy, header, schema, quick bits; installs nothing outside the target folder
-  test --all       the same first, then what is long or needs other systems: lints, Windows, ARM, Chromium,
-                   rustdoc, oldest compiler, licences, notebooks, fuzz, faults, sanitizers, long forms
+  test --all       the same first, then what is long or needs other systems: lints, Chromium, rustdoc,
+                   oldest compiler, licences, notebooks, fuzz, faults, sanitizers, long forms
+  test --platforms builds for Windows and for ARM, and compares their quick results, on emulators, with the
+                   golden table
   python           the Python tests alone
   long             the long campaigns: tests named long_*, with ENMM_LONG=1
   fuzz [--minutes N] [--seed S] [--part NAME]
@@ -54,12 +56,9 @@ usage: cargo xtask TASK
   install [--debug] --prefix DIR
                    builds and copies program, libraries, headers, CMake and pkg-config files
   wheel            builds the Python wheel of this platform, with library and program, in the target folder
-  windows [--test | --quick]
-                   builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
-                   folder; --test runs them under Wine and compares their bits with the golden table; --quick
-                   does so with a build that is hardly optimized, as test does
-  aarch64 [--test | --quick]
-                   the same for Linux on ARM by Debian's cross compiler, run by qemu
+  windows [--test] builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
+                   folder; --test runs them under Wine and compares their bits with the golden table
+  aarch64 [--test] the same for Linux on ARM by Debian's cross compiler, run by qemu
   ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
   bench [OPTIONS]  times standard models on one thread and writes tools/bench/; options of enmm bench
                    such as --models all; with --peers builds other programs, times them turn by turn with
@@ -89,6 +88,7 @@ fn main() -> ExitCode {
     let done = Repository::find(profile(&words)).and_then(|repository| match words[..] {
         ["test"] => Ok(test::usual(&repository)),
         ["test", "--all"] => Ok(test::all(&repository)),
+        ["test", "--platforms"] => Ok(test::platforms(&repository)),
         ["python"] => Ok(test::python(&repository)),
         ["long"] => Ok(test::long(&repository)),
         ["fuzz", ref words @ ..] => test::fuzz(&repository, words).map(|()| ExitCode::SUCCESS),

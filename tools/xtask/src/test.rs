@@ -9,7 +9,7 @@ use crate::bits;
 use crate::counts::{self, Counts};
 use crate::cross;
 use crate::faults;
-use crate::platform::{AARCH64_QUICK, Platform, WINDOWS_QUICK};
+use crate::platform::{AARCH64_QUICK, WINDOWS_QUICK};
 use crate::python::{self, Share};
 use crate::repository::{self, Beside, Repository};
 use crate::sanitize;
@@ -20,8 +20,10 @@ use crate::venv::{self, Packages};
 /// The schema of the case file.
 pub const SCHEMA: &str = "docs/case.schema.json";
 /// Left to `cargo xtask test --all`.
-const LEFT_OUT: &str = "lints, Windows and ARM, Chromium, rustdoc, the oldest compiler, licences and advisories of \
-    dependencies, notebooks and other Python tests, fuzzing, faults, sanitizers, the long forms of tests";
+const LEFT_OUT: &str = "lints, Chromium, rustdoc, the oldest compiler, licences and advisories of dependencies, \
+    notebooks and other Python tests, fuzzing, faults, sanitizers, unit tests within crates, the long forms of tests";
+/// The tests in folders of their own: those within a crate would build every crate a second time.
+const BESIDE_CRATES: [&str; 2] = ["--test", "*"];
 
 /// The tests of a newcomer and of every commit: they install nothing outside the target folder.
 pub fn usual(repository: &Repository) -> ExitCode {
@@ -29,7 +31,7 @@ pub fn usual(repository: &Repository) -> ExitCode {
     std::thread::scope(|scope| {
         scope.spawn(|| venv::prepare(repository, Packages::Usual));
         if take_build(repository, &mut steps) {
-            take_usual(repository, &mut steps, None);
+            take_usual(repository, &mut steps, &BESIDE_CRATES, None);
         }
     });
     println!("\nleft out, for `cargo xtask test --all`: {LEFT_OUT}");
@@ -44,10 +46,11 @@ pub fn all(repository: &Repository) -> ExitCode {
         if take_build(repository, &mut steps) {
             // A step that misses something says so.
             let _ = installed.join();
-            let elsewhere = Elsewhere::start(repository);
-            take_usual(repository, &mut steps, Some(("ENMM_FULL", "1")));
+            // It fills the time in which tests leave a processor idle.
+            let oldest = supply::start_oldest_compiler(repository);
+            take_usual(repository, &mut steps, &[], Some(("ENMM_FULL", "1")));
             steps.print_counts();
-            take_others(repository, &mut steps, elsewhere);
+            take_others(repository, &mut steps, oldest);
         }
     });
     steps.close()
@@ -56,24 +59,7 @@ pub fn all(repository: &Repository) -> ExitCode {
 /// Installs what the steps after the build need: that waits for the network more than it computes.
 fn install_all(repository: &Repository) {
     venv::prepare(repository, Packages::All);
-    [&WINDOWS_QUICK, &AARCH64_QUICK].into_iter().for_each(cross::install);
     python::install(repository);
-}
-
-/// Builds that need target folders of their own: they fill the time in which tests leave a processor idle.
-struct Elsewhere {
-    oldest: Result<Option<Beside>, String>,
-    platforms: [(&'static str, Result<Option<cross::Quick>, String>); 2],
-}
-
-impl Elsewhere {
-    fn start(repository: &Repository) -> Self {
-        let quick = |platform: &'static Platform| (platform.name, cross::start_quick(repository, platform));
-        Self {
-            oldest: supply::start_oldest_compiler(repository),
-            platforms: [&WINDOWS_QUICK, &AARCH64_QUICK].map(quick),
-        }
-    }
 }
 
 /// Returns whether there is a build, which all other steps need; they run whatever failed before.
@@ -82,14 +68,14 @@ fn take_build(repository: &Repository, steps: &mut Steps) -> bool {
     steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default()))
 }
 
-fn take_usual(repository: &Repository, steps: &mut Steps, extent: Option<(&str, &str)>) {
-    steps.take("tests", || cargo_test(repository, None, extent));
+fn take_usual(repository: &Repository, steps: &mut Steps, words: &[&str], extent: Option<(&str, &str)>) {
+    steps.take("tests", || cargo_test(repository, words, extent));
     steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
     steps.take("bits", || bits::quick(repository));
     steps.take("python", || python::test(repository, Share::Usual));
 }
 
-fn take_others(repository: &Repository, steps: &mut Steps, elsewhere: Elsewhere) {
+fn take_others(repository: &Repository, steps: &mut Steps, oldest: Result<Option<Beside>, String>) {
     steps.take("lints", || cargo(repository, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
     steps.take("documentation", || {
         let mut doc = repository.cargo(&["doc", "--workspace", "--no-deps"]);
@@ -100,10 +86,18 @@ fn take_others(repository: &Repository, steps: &mut Steps, elsewhere: Elsewhere)
     steps.take("faults", || faults::rounds_of(repository, 1));
     steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
     steps.take("sanitizers", || sanitize::over_hosts(repository).map(|()| Counts::default()));
-    steps.take("oldest compiler", || elsewhere.oldest?.map_or(Ok(()), Beside::finish).map(|()| Counts::default()));
-    for (name, build) in elsewhere.platforms {
-        steps.take(name, || cross::quick(repository, build?));
+    steps.take("oldest compiler", || oldest?.map_or(Ok(()), Beside::finish).map(|()| Counts::default()));
+}
+
+/// Builds for Windows and for ARM, and compares their quick results on emulators with the golden table.
+pub fn platforms(repository: &Repository) -> ExitCode {
+    let mut steps = Steps::default();
+    if steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default())) {
+        for platform in [&WINDOWS_QUICK, &AARCH64_QUICK] {
+            steps.take(platform.name, || cross::quick(repository, platform));
+        }
     }
+    steps.close()
 }
 
 fn cargo(repository: &Repository, args: &[&str]) -> Result<Counts, String> {
@@ -113,7 +107,7 @@ fn cargo(repository: &Repository, args: &[&str]) -> Result<Counts, String> {
 /// Runs the long campaigns; it fails when one failed, or there is none.
 pub fn long(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    steps.take("long campaigns", || cargo_test(repository, Some("long_"), Some(("ENMM_LONG", "1"))));
+    steps.take("long campaigns", || cargo_test(repository, &["long_"], Some(("ENMM_LONG", "1"))));
     steps.close()
 }
 
@@ -150,10 +144,10 @@ fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {
     repository::run(fuzz.arg("--finds").arg(repository.target.join("fuzz")).args(words))
 }
 
-/// Runs the tests whose names contain `name`; all where none is given.
-fn cargo_test(repository: &Repository, name: Option<&str>, extent: Option<(&str, &str)>) -> Result<Counts, String> {
+/// Runs the tests that `words` select; all where there are none.
+fn cargo_test(repository: &Repository, words: &[&str], extent: Option<(&str, &str)>) -> Result<Counts, String> {
     let mut test = repository.cargo(&["test", "--workspace", "--no-fail-fast"]);
-    let (lines, good) = repository::run_and_listen(test.args(name).envs(extent))?;
+    let (lines, good) = repository::run_and_listen(test.args(words).envs(extent))?;
     let counts = counts::of_cargo(&lines);
     if !good && counts.failed == 0 {
         return Err("cargo test failed without a failed test: see above".to_owned());

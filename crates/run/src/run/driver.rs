@@ -30,6 +30,7 @@ use enmm_report::{Axis, FILM, Note, Quantity};
 use enmm_stability::corners::{CarryingCorner, carrying_corners};
 use enmm_stability::strength_reduction::slide;
 
+use super::concurrency::Concurrency;
 use super::outlook::Outlook;
 use super::results::Past;
 use super::rows::{self, Plan};
@@ -119,6 +120,7 @@ struct Driver<'a> {
     options: &'a RunOptions<'a>,
     observer: &'a mut dyn Observer,
     simulation: Simulation,
+    concurrency: Concurrency,
     progress: Progress,
     outlook: Outlook,
     good: Saved,
@@ -203,6 +205,7 @@ impl<'a> Driver<'a> {
             options,
             observer,
             simulation,
+            concurrency: Concurrency::new(options.threads),
             progress,
             outlook: Outlook::default(),
             good,
@@ -317,7 +320,8 @@ impl<'a> Driver<'a> {
         let rest_due = self.simulation.rest_due();
         let wanted = step == 0 || row || rest_due;
         let known = self.simulation.state().events.list.len();
-        let report = self.simulation.advance(wanted).map_err(|error| Ok(StageEnd::Failed(error)))?;
+        let made = self.concurrency.advance(&mut self.simulation, wanted);
+        let report = made.map_err(|error| Ok(StageEnd::Failed(error)))?;
         self.warn_of_overlaps(known).map_err(Err)?;
         if !wanted {
             return Ok(None);

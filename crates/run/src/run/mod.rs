@@ -2,6 +2,7 @@
 //!
 //! Everything that can fail as input fails before anything is written. Prints nothing: an [`Observer`] hears.
 
+mod concurrency;
 mod driver;
 mod load_at_once;
 mod outlook;
@@ -28,7 +29,7 @@ pub struct RunOptions<'a> {
     pub directory: PathBuf,
     /// Checkpoint to continue from.
     pub resume: Option<PathBuf>,
-    /// Threads; all that there are when none is given. The results do not depend on it.
+    /// Threads; when none is given, as many as make steps shorter. The results do not depend on it.
     pub threads: Option<usize>,
     /// Set by another thread to end the run with a checkpoint.
     pub interrupt: Option<&'a AtomicBool>,
