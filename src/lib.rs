@@ -20,6 +20,7 @@ mod cover;
 pub mod geometry;
 mod mechanics;
 pub mod model;
+mod rock;
 mod state;
 mod step;
 

@@ -14,7 +14,7 @@ mod record;
 mod turn;
 mod yield_lanes;
 
-pub use enmm_rock::{
+pub use crate::rock::{
     Criterion, Deformation, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, PreStress, Strained, StressField,
     YieldSurface, YieldingRock, critical_dt, equivalent_strain,
 };

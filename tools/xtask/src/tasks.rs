@@ -123,7 +123,7 @@ fn write_couplings(repository: &Repository, pictures: &Path) -> Result<(), Strin
 /// # Errors
 /// When its program does not build or run, or the file cannot be written.
 pub fn write_header(repository: &Repository) -> Result<(), String> {
-    repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--package", "enmm-header"]))?;
+    repository::run(&mut repository.cargo(&["run", "--quiet", "--package", "enmm-capi", "--example", "header"]))?;
     println!("wrote the header of the C ABI");
     Ok(())
 }

@@ -3,8 +3,8 @@
 
 use enmm_lanes::{Arithmetic, Values};
 
-use crate::hoek_brown::{Curve, HoekBrown, Onto, Returned};
-use crate::{Deformation, Elasticity};
+use super::hoek_brown::{Curve, HoekBrown, Onto, Returned};
+use super::{Deformation, Elasticity};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
 pub type PlasticStrain = [f64; 4];

@@ -1,6 +1,6 @@
 //! The header and the layouts for Python that are committed are those of the sources.
 
-use enmm_header::{files, generate, root};
+use crate::generator::{files, generate, root};
 
 #[test]
 fn the_header_and_the_layouts_for_python_are_those_of_the_sources() {

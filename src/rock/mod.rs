@@ -1,5 +1,5 @@
 //! The rock of one element, or of eight elements in lanes, as pure functions: deformation, stress and energy, elastic
-//! and beyond the yield surface. The crate knows no covers, no blocks and no time.
+//! and beyond the yield surface. The room knows no covers, no blocks and no time.
 
 mod deformation;
 mod elasticity;
@@ -10,6 +10,3 @@ pub use deformation::{Deformation, PreStress, StressField};
 pub use elasticity::{Elasticity, critical_dt};
 pub use hoek_brown::HoekBrown;
 pub use plasticity::{Criterion, MohrCoulomb, PlasticStrain, Strained, YieldSurface, YieldingRock, equivalent_strain};
-
-/// A vector of the plane.
-pub type Vector = nalgebra::Vector2<f64>;

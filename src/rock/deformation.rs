@@ -3,7 +3,9 @@
 
 use enmm_lanes::{Arithmetic, First, Values};
 
-use crate::{Elasticity, Vector};
+use crate::geometry::Vector;
+
+use super::Elasticity;
 
 /// Stress xx, yy, xy (Pa) in the reference axes of an element before any displacement.
 pub type PreStress = [f64; 3];

@@ -2,7 +2,7 @@
 
 use enmm_case::{Envelope, Tangent};
 
-use crate::Elasticity;
+use super::Elasticity;
 
 /// Points of the table of an envelope: neighbouring circles differ by a sixth in their size, so that chords between
 /// them hold all but a few thousandths of the strength.
