@@ -6,9 +6,11 @@ pub mod fit;
 pub mod mechanism;
 mod observe;
 pub mod overlap;
+mod rest;
 mod restless;
 pub mod settle;
 mod simulation;
+mod stage;
 pub mod tables;
 
 pub use enmm_case as case;

@@ -512,10 +512,10 @@ fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], scale: f64) -> O
 mod tests {
     use enmm_case::{Envelope, HoekBrown};
 
-    use crate::Vector;
+    use crate::geometry::Vector;
 
     use super::*;
-    use crate::hoek_brown;
+    use crate::rock::hoek_brown;
 
     fn rock(friction_deg: f64, dilation_deg: f64, tension: Option<f64>, plane_stress: bool) -> YieldingRock {
         let tangent = |degrees: f64| degrees.to_radians().tan();

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use enmm_bench::{
-    BenchOptions, BenchReport, LARGE, Measured, Model, Origin, REPORT_FILES, STANDARD, bench, write_report,
-};
 use enmm_io::files::write_atomic;
 use enmm_run::make_place;
+use enmm_verification::bench::{
+    BenchOptions, BenchReport, LARGE, Measured, Model, Origin, REPORT_FILES, STANDARD, bench, write_report,
+};
 
 use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm_io::files::remove_if_there;
-use enmm_paper::{Converter, REPORT, REPORT_PDF, Records, write_report};
+use enmm_report::paper::{Converter, REPORT, REPORT_PDF, Records, write_report};
 use enmm_run::Folder;
 
 use crate::{BAD_INPUT, FAILED, fail, print_line};

@@ -193,7 +193,7 @@ fn a_chip_is_named_beside_the_slope() {
 }
 
 /// Before its bolts are installed, the bracket of the cut holds the factor of its formula without them
-/// (`road_cut.toml`). It is wide, since trials close to that factor creep for long: the tests of the tutorial narrow it.
+/// (`road_cut.toml`). It is wide, since trials close to that factor creep for long: tests of the tutorial narrow it.
 #[test]
 fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
     let place = Place::with("");

@@ -1,8 +1,9 @@
 //! The film of a slope, and the page that shows it.
 //!
 //! A run appends each frame to a film while it goes on ([`FilmWriter`]). [`write_page`] makes `report.html` of a film:
-//! one file that needs no network and no other file. `serve` shows a film that still grows. The crate does not
-//! depend on the engine: whoever writes a film fills in plain data ([`Head`], [`Outline`], [`Frame`], [`Note`]).
+//! one file that needs no network and no other file. `serve` shows a film that still grows. Neither knows the engine:
+//! whoever writes a film fills in plain data ([`Head`], [`Outline`], [`Frame`], [`Note`]). [`paper`] is the report of
+//! results on paper.
 //!
 //! `format.md` beside this crate's sources describes every byte of a film and how accurate it is.
 
@@ -12,6 +13,7 @@ mod data;
 mod error;
 mod number;
 mod page;
+pub mod paper;
 mod serve;
 mod structures;
 mod writer;

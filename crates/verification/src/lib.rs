@@ -3,8 +3,10 @@
 
 //!
 //! [`choose`] makes jobs from the request of a user, [`solve_all`] solves them, [`Record`] is what came out as data,
-//! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side.
+//! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side. [`bench`] times
+//! standard models.
 
+pub mod bench;
 pub mod comparison;
 mod lines;
 mod model;

@@ -1,6 +1,6 @@
 //! Claim: problems pass with other values of their parameters, too: other shapes, planes, rocks and time steps.
 
-use crate::extent::by_extent;
+use crate::common::extent::by_extent;
 use enmm::model::case::Integrator;
 use enmm_verification::{Setup, Values, problems};
 

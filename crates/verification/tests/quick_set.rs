@@ -9,7 +9,7 @@
 //!   libraries of machines). A change of a problem, of its formula or of the engine shows here;
 //! - the full form of some problems, with `ENMM_LONG=1` (`cargo xtask long`) of all, is compared in the same way.
 
-use crate::extent::by_extent;
+use crate::common::extent::by_extent;
 use std::path::{Path, PathBuf};
 
 use enmm_verification::problems::ALL;

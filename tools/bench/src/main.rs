@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use enmm_bench::{Model, Origin};
+use enmm_verification::bench::{Model, Origin};
 
 use peer_report::{peers_markdown, write_peers};
 use peers::{COMPARED, Peer, PeerOptions, compare};

@@ -5,9 +5,9 @@ use std::io;
 use std::path::Path;
 
 use super::peers::{Compared, PeerReport, Timed};
-use enmm_bench::{Origin, digits, none, push_machine, push_table};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::counted;
+use enmm_verification::bench::{Origin, digits, none, push_machine, push_table};
 
 const INTRODUCTION: &str = "\
 Every program simulates the same polygons of blocks from the same first instant, on one thread, turn by turn in rounds

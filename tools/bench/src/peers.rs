@@ -10,7 +10,7 @@ use std::process::Command;
 use serde::{Deserialize, Serialize};
 
 use enmm::engine_version;
-use enmm_bench::{BenchError, BenchOptions, Machine, Model, advance, in_pool, measure, sizes, timed};
+use enmm_verification::bench::{BenchError, BenchOptions, Machine, Model, advance, in_pool, measure, sizes, timed};
 
 use super::scene::{Outcome, Placed, Scene};
 

@@ -188,7 +188,7 @@ fn values<K, V>(map: &std::collections::BTreeMap<K, V>) -> Vec<&V> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use enmm_bench::Model;
+    use enmm_verification::bench::Model;
 
     fn slope() -> (Simulation, Scene) {
         let simulation = Model::Slope(60, 4).build().unwrap_or_else(|e| panic!("{e}"));

@@ -11,6 +11,8 @@ mod emulator;
 mod faults;
 mod formulas;
 mod install;
+#[path = "../../../ffi/fmi/parts/mod.rs"]
+mod parts;
 mod platform;
 mod python;
 mod repository;

@@ -23,7 +23,7 @@ pub const SCHEMA: &str = "docs/case.schema.json";
 const LEFT_OUT: &str = "lints, Chromium, rustdoc, the oldest compiler, licences and advisories of dependencies, \
     notebooks and other Python tests, fuzzing, faults, sanitizers, unit tests within crates, the long forms of tests";
 /// The tests in folders of their own: those within a crate would build every crate a second time.
-const BESIDE_CRATES: [&str; 2] = ["--test", "*"];
+const BESIDE_CRATES: [&str; 3] = ["--test", "*", "--examples"];
 
 /// The tests of a newcomer and of every commit: they install nothing outside the target folder.
 pub fn usual(repository: &Repository) -> ExitCode {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::parts;
 use crate::platform::Platform;
 use crate::repository::{self, Repository};
 use crate::supply;
@@ -82,8 +83,8 @@ fn size_of(file: &Path) -> Result<u64, String> {
 
 /// Writes the licences of all crates in the binaries, and the list of these crates, beside them.
 fn write_parts(repository: &Repository, folder: &Path) -> Result<(), String> {
-    let parts = enmm_parts::of_repository(&repository.root)?;
-    for (name, text) in [(enmm_parts::LIST, parts.list), (enmm_parts::LICENSES, parts.licenses)] {
+    let made = parts::of(Some(&repository.root))?;
+    for (name, text) in [(parts::LIST, made.list), (parts::LICENSES, made.licenses)] {
         std::fs::write(folder.join(name), text).map_err(|error| format!("{name}: {error}"))?;
     }
     Ok(())

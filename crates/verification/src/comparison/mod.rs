@@ -6,10 +6,10 @@ mod report;
 
 use std::time::Instant;
 
+use crate::bench::Machine;
 use enmm::geometry::Vector;
 use enmm::model::case::Integrator;
 use enmm::model::{Counters, Simulation};
-use enmm_bench::Machine;
 use enmm_implicit::ImplicitBuffers;
 
 use crate::{Plot, Setup, Trouble, Values};

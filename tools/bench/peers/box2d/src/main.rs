@@ -5,7 +5,7 @@
 //! Box2D counts lengths in 4-byte numbers and takes no polygon below half a centimetre: it leaves such blocks out.
 
 /// The clock that enmm is timed with.
-#[path = "../../../../../crates/bench/src/clock.rs"]
+#[path = "../../../../../crates/verification/src/bench/clock.rs"]
 #[expect(dead_code, reason = "memory is not compared")]
 mod clock;
 #[path = "../../scene.rs"]

@@ -13,7 +13,7 @@
 //! whole block. Grains thinner than two skins are left out.
 
 /// The clock that enmm is timed with.
-#[path = "../../../../../crates/bench/src/clock.rs"]
+#[path = "../../../../../crates/verification/src/bench/clock.rs"]
 #[expect(dead_code, reason = "memory is not compared")]
 mod clock;
 #[path = "../../scene.rs"]

@@ -1,6 +1,5 @@
 //! The Rust crates in our libraries and our program: a list of them (CycloneDX) and their licences, which travel in
 //! every FMU and wheel. Builds make both; the same crates give the same bytes.
-#![forbid(unsafe_code)]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -47,11 +46,13 @@ struct Part {
     folder: String,
 }
 
-/// Lists the crates that `Cargo.lock` of the repository names, for all platforms.
+/// Lists the crates that `Cargo.lock` of the repository names, for all platforms. Without one, as in a build from
+/// packages, nothing says which crates it contains, and the list is empty.
 ///
 /// # Errors
 /// When cargo cannot name the crates, or the sources or the licence of one are missing.
-pub fn of_repository(root: &Path) -> Result<Parts, String> {
+pub fn of(repository: Option<&Path>) -> Result<Parts, String> {
+    let Some(root) = repository else { return unlisted() };
     let metadata = metadata(root)?;
     let parts = parts(&metadata);
     let checksums = checksums(&read(&root.join("Cargo.lock"))?);
@@ -66,11 +67,7 @@ pub fn of_repository(root: &Path) -> Result<Parts, String> {
     Ok(Parts { list: list(&parts, &checksums)?, licenses: head + &licenses(&parts, &mit)? + WINDOWS })
 }
 
-/// The texts of a build outside the repository, from packages: no lock file says which crates it contains.
-///
-/// # Errors
-/// Never; it has the signature of [`of_repository`].
-pub fn unlisted() -> Result<Parts, String> {
+fn unlisted() -> Result<Parts, String> {
     let licenses = "enmm may be used under MIT or Apache-2.0. This build was not made in the repository of enmm, so\n\
                     the licences of the Rust crates in its libraries and its program are not listed here.\n";
     Ok(Parts { list: list(&[], &BTreeMap::new())?, licenses: licenses.to_owned() })

@@ -4,7 +4,7 @@
 use enmm::model::Simulation;
 use enmm::model::overlap::Audit;
 use enmm::model::tables::BlockId;
-use enmm_bench::{BenchOptions, Model, bench, slope_case};
+use enmm_verification::bench::{BenchOptions, Model, bench, slope_case};
 
 /// Dip of base and bedding, and friction (rad).
 const DIP: f64 = std::f64::consts::FRAC_PI_6;

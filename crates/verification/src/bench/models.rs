@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_failing_slope_is_that_of_the_examples() {
-        assert_eq!(FRACTURED, include_str!("../../../examples/cases/fractured_slope.toml"));
+        assert_eq!(FRACTURED, include_str!("../../../../examples/cases/fractured_slope.toml"));
     }
 
     #[test]

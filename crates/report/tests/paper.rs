@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use enmm_paper::{Converter, REPORT, Records, RecordsError, report_html, write_report};
+use enmm_report::paper::{Converter, REPORT, Records, RecordsError, report_html, write_report};
 use serde_json::{Value, json};
 
 use crate::json::numbers;

@@ -2,7 +2,7 @@
 
 use quick_xml::escape::escape;
 
-use crate::number::Number;
+use super::number::Number;
 
 /// What stands in a cell.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use enmm::geometry::Vector;
 use enmm::internals::step::{Regime, advance, prepare};
 use enmm::model::State;
 use enmm::model::tables::{CoverId, Model, Workspace};
-use enmm_bench::continuum_case;
+use enmm_verification::bench::continuum_case;
 
 /// Height (m) below which nothing is displaced, so that what holds the base plays no part.
 const STILL: f64 = 10.0;

@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use crate::input::bolt_name;
-use crate::number::{Digits, length, mass, percent, plain, prefixed};
-use crate::parts::{chapter, entries, figure, part, plain_words, text};
-use crate::records::{Record, Records};
-use crate::table::{Cell, facts, paragraph, table};
+use super::input::bolt_name;
+use super::number::{Digits, length, mass, percent, plain, prefixed};
+use super::parts::{chapter, entries, figure, part, plain_words, text};
+use super::records::{Record, Records};
+use super::table::{Cell, facts, paragraph, table};
 
 use Digits::Three;
 

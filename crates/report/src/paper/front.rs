@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use crate::number::{Digits, mass, percent, plain};
-use crate::parts::{chapter, entries, part, text, texts};
-use crate::records::{Record, Records};
-use crate::results::{factor_cell, limit_factor, permanent_motions, stage_of_factor};
-use crate::table::{Cell, facts, list, paragraph, text_html};
+use super::number::{Digits, mass, percent, plain};
+use super::parts::{chapter, entries, part, text, texts};
+use super::records::{Record, Records};
+use super::results::{factor_cell, limit_factor, permanent_motions, stage_of_factor};
+use super::table::{Cell, facts, list, paragraph, text_html};
 
 /// Project, author, date, version and the main results.
 pub fn title_page(records: &Records) -> String {

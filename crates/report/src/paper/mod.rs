@@ -2,7 +2,6 @@
 //!
 //! A report is made from what commands left in a folder (`summary.json`, `fos.json`, `bound.json`, `ensemble.json` and
 //! pictures) and computes nothing: every number of its tables stands in one of these records.
-#![forbid(unsafe_code)]
 
 mod front;
 mod html;

@@ -1,5 +1,4 @@
 //! Costs of standard models: continua without contact, an example that rests and fails, slopes of any size that slide.
-#![forbid(unsafe_code)]
 
 mod clock;
 mod machine;

@@ -4,8 +4,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
-use crate::records::Record;
-use crate::table::text_html;
+use super::records::Record;
+use super::table::text_html;
 
 /// A picture of a record with a caption; empty where it is not there.
 pub fn figure(record: &Record, name: &str, caption: &str) -> String {

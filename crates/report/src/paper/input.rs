@@ -2,10 +2,10 @@
 
 use serde_json::Value;
 
-use crate::number::{Digits, Number, length, plain, prefixed, steel_area};
-use crate::parts::{chapter, entries, figure, part, text};
-use crate::records::Records;
-use crate::table::{Cell, facts, table};
+use super::number::{Digits, Number, length, plain, prefixed, steel_area};
+use super::parts::{chapter, entries, figure, part, text};
+use super::records::Records;
+use super::table::{Cell, facts, table};
 
 use Digits::Typed;
 

@@ -1,11 +1,11 @@
 //! The whole report.
 
-use crate::front::{missing, title_page, warnings};
-use crate::input::input_chapter;
-use crate::parts::{chapter, text};
-use crate::records::Records;
-use crate::results::{bound_chapter, factor_chapter, probability_chapter, run_chapter};
-use crate::table::text_html;
+use super::front::{missing, title_page, warnings};
+use super::input::input_chapter;
+use super::parts::{chapter, text};
+use super::records::Records;
+use super::results::{bound_chapter, factor_chapter, probability_chapter, run_chapter};
+use super::table::text_html;
 
 const STYLE: &str = include_str!("style.css");
 

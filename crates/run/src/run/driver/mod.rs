@@ -1,34 +1,27 @@
 //! The loop over stages and steps, with outputs at their times.
 
+mod closing;
+mod progress;
+mod warnings;
+
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
-use crate::blocks::write_blocks;
 use crate::check::count_of_notes;
 use crate::film::{Film, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
-use crate::input::input_record;
-use crate::motion::{FailureOfStage, PermanentMotion};
-use crate::summary::{FAILED, RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
-use crate::verdict::Verdict;
+use crate::motion::PermanentMotion;
+use crate::summary::{FAILED, RunStatus, StageRecord, Summary};
 use crate::vtu::{Part, PvdWriter, Structures};
 use enmm::geometry::Vector;
-use enmm::model::bytes::BytesError;
-use enmm::model::case::{Integrator, Invalid, StageKind};
-use enmm::model::fit::{self, Unfit};
-use enmm::model::tables::{BlockId, Seconds};
-use enmm::model::{Event, EventKind, Ledger, Restless, Simulation, State, StepError, StepReport, settle};
+use enmm::model::case::{Invalid, StageKind};
+use enmm::model::{Restless, Simulation, StepError, StepReport, settle};
 use enmm_io::LoadedCase;
-use enmm_io::checkpoint;
 use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note, Quantity};
-use enmm_stability::corners::{CarryingCorner, carrying_corners};
-use enmm_stability::strength_reduction::slide;
 
 use super::concurrency::Concurrency;
 use super::outlook::Outlook;
@@ -36,72 +29,12 @@ use super::results::Past;
 use super::rows::{self, Plan};
 use super::{Observer, RunError, RunOptions, RunProgress, results};
 
+use progress::{Progress, Saved, load};
+
 /// Name of the checkpoint in the folder of a run.
 const CHECKPOINT: &str = "checkpoint.enmm";
 /// Most steps between two copies of the state to which a failed run falls back.
 const GOOD_STEPS: u64 = 200;
-/// Blocks that a warning names.
-const NAMED: usize = 3;
-/// Least slip (m) that a warning gives, by its digits.
-const SLIP_SHOWN: f64 = 5e-5;
-/// Share of unsettled steps above which a stage is warned of: a few are usual where blocks strike each other.
-const UNSETTLED_SHARE: f64 = 0.01;
-
-/// Progress of a run beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-struct Progress {
-    /// Stages that are over.
-    done: Vec<StageRecord>,
-    /// Unsettled sub-steps before this stage.
-    unsettled_before: u64,
-    /// Potential energy at the start of this stage (J/m).
-    potential_start: Option<f64>,
-    /// Sweeps and sub-steps at the last row.
-    row_sweeps: [u64; 2],
-    /// Largest penetration at reports of this stage (m).
-    penetration_max: f64,
-    /// Unbalanced ratio at the last report.
-    unbalanced: f64,
-    /// Ledger at the last report.
-    ledger: Ledger,
-    /// Displacements of the covers at the start of this stage (m); empty where the state has them.
-    started: Vec<Vector>,
-    /// Where the dynamic stages that are over have left the rock.
-    permanent: Vec<PermanentMotion>,
-}
-
-impl Progress {
-    /// Whether it can be that of a state.
-    ///
-    /// # Errors
-    /// The first number that cannot.
-    fn check(&self, state: &State) -> Result<(), Unfit> {
-        let Self { done, unsettled_before, potential_start, row_sweeps, .. } = self;
-        let Self { penetration_max, unbalanced, ledger, started, permanent, .. } = self;
-        let stages = u64::from(state.stage);
-        fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
-        fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
-        fit::at_most("the number of records of motions", permanent.len() as u64, done.len() as u64)?;
-        fit::number("potential_start", potential_start.unwrap_or_default(), fit::FORCE)?;
-        fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
-        fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;
-        fit::number("penetration_max", *penetration_max, fit::LENGTH)?;
-        fit::between("unbalanced", *unbalanced, 0.0, f64::INFINITY)?;
-        if !started.is_empty() {
-            let covers = state.displacement.len() as f64;
-            fit::between("the number of displacements in started", started.len() as f64, covers, covers)?;
-        }
-        started.iter().flatten().try_for_each(|part| fit::number("started", *part, fit::LENGTH))?;
-        fit::check_ledger(ledger)
-    }
-}
-
-/// A checkpoint of a run. The state comes first, so that it can be read alone.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Saved<S = State> {
-    state: S,
-    progress: Progress,
-}
 
 /// How a stage ended.
 enum StageEnd {
@@ -158,14 +91,6 @@ fn inputs(loaded: &LoadedCase, options: &RunOptions) -> Vec<PathBuf> {
     let own = options.directory.join(CHECKPOINT).canonicalize().ok();
     let is_foreign = |path: &&PathBuf| path.canonicalize().ok() != own;
     loaded.source.inputs().iter().chain(options.resume.iter().filter(is_foreign)).cloned().collect()
-}
-
-fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
-    let refuse = |error| RunError::Checkpoint { path: path.to_owned(), error };
-    let saved: Saved = checkpoint::load(path, hash).map_err(refuse)?;
-    let fits = simulation.check(&saved.state).and_then(|()| saved.progress.check(&saved.state));
-    fits.map_err(|unfit| refuse(BytesError::Damaged(unfit.to_string()).into()))?;
-    Ok(saved)
 }
 
 impl<'a> Driver<'a> {
@@ -428,150 +353,8 @@ impl<'a> Driver<'a> {
         if of_state.is_empty() { &self.progress.started } else { of_state }
     }
 
-    /// Warns of the first pairs of blocks that overlap, with the event of index `known` or a later one.
-    fn warn_of_overlaps(&mut self, known: usize) -> Result<(), RunError> {
-        let is_overlap = |event: &&Event| event.kind == EventKind::Overlapped;
-        let events = &self.simulation.state().events;
-        let new: Vec<Event> = events.list[known..].iter().filter(is_overlap).copied().collect();
-        let room = (NAMED + new.len()).saturating_sub(events.overlapped.len());
-        new.iter().take(room).try_for_each(|event| self.warn(overlap_text(&self.simulation, event)))
-    }
-
     fn draw_stage(&self) -> io::Result<()> {
         results::draw_stage(&self.simulation, &self.joints, self.began(), &self.options.directory)
-    }
-
-    /// Warns of a static stage that has run away.
-    fn warn_of_early_end(&mut self) -> Result<(), RunError> {
-        let (stage, limit) = (self.simulation.stage(), self.simulation.model().failure_displacement);
-        let (name, duration) = (&stage.name, stage.duration);
-        let time = self.simulation.time() - self.simulation.state().stage_start;
-        self.warn(format!(
-            "stage {name:?} ended early, after {time:.4} s of at most {duration} s: rock has moved by more than \
-             {limit} m and becomes no slower, so that it will not come to rest; raise solver.failure_displacement to \
-             follow it farther"
-        ))
-    }
-
-    fn warn_of_stage(&mut self, converged: bool, restless: &[Restless]) -> Result<(), RunError> {
-        self.warn_of_unsettled()?;
-        self.warn_of_shaking()?;
-        let stage = self.simulation.stage();
-        if stage.kind == StageKind::Static && converged && !restless.is_empty() {
-            let name = &stage.name;
-            self.warn(format!("stage {name:?} is at rest but for {}, which cannot rest", named(restless)))?;
-        }
-        let stage = self.simulation.stage();
-        if stage.kind == StageKind::Static && !converged {
-            let (name, time, ratio) = (&stage.name, stage.duration, self.progress.unbalanced);
-            self.warn(format!(
-                "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}); \
-                 fastest: {}",
-                named(&self.simulation.moving())
-            ))?;
-        } else if self.has_only_settled()
-            && let Some(slip) = slide(&self.simulation)
-        {
-            let name = &stage.name;
-            self.warn(format!(
-                "stage {name:?} is at rest after joints have slipped by up to {slip:.3} m, farther than elasticity \
-                 explains: rock slid until other rock stopped it; `enmm fos` counts that as a failure"
-            ))?;
-        }
-        Ok(())
-    }
-
-    /// Warns of a stage in which contacts often end a step with other forces than their joint laws give.
-    fn warn_of_unsettled(&mut self) -> Result<(), RunError> {
-        let (steps, unsettled) = (self.simulation.state().stage_step, self.unsettled());
-        if unsettled as f64 <= UNSETTLED_SHARE * steps as f64 {
-            return Ok(());
-        }
-        let (name, solver) = (&self.simulation.stage().name, &self.simulation.case().solver);
-        let (most, step) = match solver.integrator {
-            Integrator::Explicit => (format!("{} sweeps (solver.sweeps_max)", solver.sweeps_max), "dt_max"),
-            Integrator::Implicit => {
-                (format!("{} iterations (solver.iterations_max)", solver.iterations_max), "implicit_step")
-            }
-        };
-        self.warn(format!(
-            "stage {name:?}: the open–close iteration did not settle within {most} in {unsettled} sub-steps of {steps} \
-             steps, so that joints may slip or open falsely; compare with a run of shorter steps (solver.{step})"
-        ))
-    }
-
-    /// Warns of joints that have slipped when the ground has shaken: their slip depends on the mesh.
-    fn warn_of_shaking(&mut self) -> Result<(), RunError> {
-        let (case, stage) = (self.simulation.case(), self.simulation.stage());
-        if !case.is_shaken(self.simulation.state().stage as usize) {
-            return Ok(());
-        }
-        let joints = self.joints.now(&self.simulation);
-        let slip = joints.iter().filter(|piece| piece.is_joint).map(|piece| piece.slip.abs()).fold(0.0, f64::max);
-        if slip < SLIP_SHOWN {
-            return Ok(());
-        }
-        let (name, half) = (&stage.name, 0.5 * case.mesh.size);
-        self.warn(format!(
-            "stage {name:?}: joints have slipped by up to {slip:.4} m; how far a shaken slope slips depends on the \
-             mesh, slips of millimetres by several times: compare with a run on half the mesh size (--set \
-             mesh.size={half})"
-        ))
-    }
-
-    /// Warns of corners that carry more than rock bears.
-    fn warn_of_corners(&mut self) -> Result<(), RunError> {
-        let corners: Vec<String> = carrying_corners(&self.simulation).iter().map(CarryingCorner::text).collect();
-        if corners.is_empty() {
-            return Ok(());
-        }
-        let (name, corners) = (&self.simulation.stage().name, corners.join(", "));
-        self.warn(format!(
-            "stage {name:?}: {corners}, which is more than the rock bears there: `enmm fos` has the factor without \
-             corners that meet rock ahead of them"
-        ))
-    }
-
-    /// Sub-steps of the stage that ended unsettled.
-    fn unsettled(&self) -> u64 {
-        self.simulation.state().counters.unsettled - self.progress.unsettled_before
-    }
-
-    /// Whether this stage and all before it are static, so that every slip so far belongs to settling.
-    fn has_only_settled(&self) -> bool {
-        let mut stages = self.simulation.case().stages.iter().take(self.simulation.state().stage as usize + 1);
-        stages.all(|stage| stage.kind == StageKind::Static)
-    }
-
-    fn warn(&mut self, message: String) -> Result<(), RunError> {
-        self.observer.warn(&message);
-        let note = Note::Warning { text: message.clone() };
-        self.warnings.push(message);
-        self.film.note(self.simulation.time(), &note).map_err(RunError::Output)
-    }
-
-    fn stage_record(&self, converged: Option<bool>) -> StageRecord {
-        let (stage, state, progress) = (self.simulation.stage(), self.simulation.state(), &self.progress);
-        let potential = progress.ledger.potential;
-        let is_at_rest = stage.kind == StageKind::Dynamic || converged.unwrap_or(true);
-        let began = self.began();
-        StageRecord {
-            name: stage.name.clone(),
-            kind: stage.kind,
-            start: state.stage_start,
-            time: self.simulation.time() - state.stage_start,
-            steps: state.stage_step,
-            converged: converged.filter(|_| stage.kind == StageKind::Static),
-            ended_early: false,
-            displacement: self.simulation.farthest_since(began).map_or(0.0, |farthest| farthest.displacement),
-            failure: self.simulation.failure_since(began, is_at_rest).map(FailureOfStage::from),
-            wall_seconds: Some(self.stage_clock.elapsed().as_secs_f64()),
-            unbalanced: progress.unbalanced,
-            kinetic_energy: progress.ledger.kinetic,
-            potential_released: progress.potential_start.unwrap_or(potential) - potential,
-            unsettled: self.unsettled(),
-            penetration_max: progress.penetration_max,
-        }
     }
 
     fn tell(&mut self) {
@@ -602,110 +385,6 @@ impl<'a> Driver<'a> {
     fn keep_good(&mut self) {
         self.good.state.copy_from(self.simulation.state());
         self.good.progress.clone_from(&self.progress);
-    }
-
-    fn wall(&self) -> WallSeconds {
-        let parts: &Seconds = &self.simulation.workspace().seconds;
-        WallSeconds::of(parts, self.clock.elapsed().as_secs_f64())
-    }
-
-    /// Writes the checkpoint of the state now.
-    fn save(&mut self) -> Result<(), RunError> {
-        let mut progress = self.progress.clone();
-        progress.done.iter_mut().for_each(|stage| stage.wall_seconds = None);
-        let saved = Saved { state: self.simulation.state(), progress };
-        let path = self.options.directory.join(CHECKPOINT);
-        checkpoint::save(&path, &saved, &self.loaded.hash).map_err(RunError::Output)?;
-        self.saved = true;
-        Ok(())
-    }
-
-    /// Falls back to the last good state and closes.
-    fn fail(&mut self, error: &StepError) -> Result<Summary, RunError> {
-        self.simulation.return_to(&self.good.state);
-        self.progress = self.good.progress.clone();
-        self.close(RunStatus::Failed, Some(error))
-    }
-
-    /// Writes what a run leaves at its end, the checkpoint first and the summary last.
-    fn close(&mut self, status: RunStatus, failure: Option<&StepError>) -> Result<Summary, RunError> {
-        self.simulation.drop_buffers();
-        self.save()?;
-        self.history.check_place().map_err(RunError::Output)?;
-        let directory = &self.options.directory;
-        write_blocks(&directory.join("blocks.csv"), &self.simulation.block_states()).map_err(RunError::Output)?;
-        if status != RunStatus::Interrupted {
-            results::draw_end(&self.simulation, directory).map_err(RunError::Output)?;
-        }
-        let mut stages = self.progress.done.clone();
-        if stages.len() <= self.simulation.state().stage as usize {
-            stages.push(self.stage_record(None));
-        }
-        let ended = status == RunStatus::Finished;
-        let doubt = self.simulation.doubt(&self.progress.ledger).filter(|_| ended);
-        self.warnings.extend(doubt.clone());
-        let verdict = Verdict::of(&stages, status);
-        let time = self.simulation.time();
-        let note = Note::Verdict { text: verdict.text.clone(), failed: verdict.failed };
-        self.film.note(time, &note).map_err(RunError::Output)?;
-        self.close_film(status, failure, doubt.as_ref()).map_err(RunError::Output)?;
-        let record = RunRecord {
-            case_file: self.loaded.source.file(),
-            case_hash: &self.loaded.hash,
-            settings: &self.loaded.settings,
-            status,
-            failure,
-            stages,
-            permanent: self.progress.permanent.clone(),
-            failed: verdict.failed,
-            verdict: verdict.text,
-            ledger: &self.progress.ledger,
-            wall: self.wall(),
-            warnings: std::mem::take(&mut self.warnings),
-            input: input_record(self.loaded),
-            doubt,
-        };
-        let summary = Summary::new(&self.simulation, record);
-        summary.write(&directory.join("summary.json")).map_err(RunError::Output)?;
-        Ok(summary)
-    }
-}
-
-fn overlap_text(simulation: &Simulation, event: &Event) -> String {
-    let place = simulation.motion_of(BlockId::new(event.subject as usize)).centroid;
-    format!(
-        "{} near ({:.3}, {:.3}) m at t = {:.4} s: results about them are wrong from here on; where their joint is \
-         soft, raise its normal_stiffness",
-        event.overlap_text(simulation.model().covers.mesh.size),
-        place.x,
-        place.y,
-        event.time
-    )
-}
-
-/// The first of these blocks in words.
-fn named(blocks: &[Restless]) -> String {
-    let more = blocks.len().saturating_sub(NAMED);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let named: Vec<String> = blocks.iter().take(NAMED).map(Restless::to_string).collect();
-    named.join("; ") + &more
-}
-
-impl Driver<'_> {
-    /// Writes the page of the run.
-    fn close_film(&mut self, status: RunStatus, failure: Option<&StepError>, doubt: Option<&String>) -> io::Result<()> {
-        let time = self.simulation.time();
-        if let Some(doubt) = doubt {
-            self.film.note(time, &Note::Warning { text: doubt.clone() })?;
-        }
-        let status = match (status, failure) {
-            (RunStatus::Finished, _) => "finished".to_owned(),
-            (RunStatus::Interrupted, _) => "interrupted".to_owned(),
-            (RunStatus::Failed, failure) => {
-                failure.map_or_else(|| "failed".to_owned(), |error| format!("failed: {error}"))
-            }
-        };
-        self.film.close(time, status)
     }
 }
 
