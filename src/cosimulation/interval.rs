@@ -121,7 +121,7 @@ impl Cosimulation {
         }
         let more = interval.end - self.grid_time() > same;
         if !more {
-            self.progress.told = interval.end;
+            self.progress.host_time = interval.end;
             self.end(interval);
         }
         Ok(more)

@@ -53,8 +53,8 @@ struct Progress {
     /// Whether an input has changed since the last step ended.
     changed: bool,
     interpolation: Interpolation,
-    /// End of the last communication step as the host counts (s); [`Cosimulation::time`] as long as the model is there.
-    told: f64,
+    /// End of the last communication step by the host's clock (s).
+    host_time: f64,
 }
 
 /// A model in the hands of a host.
@@ -112,8 +112,8 @@ impl Cosimulation {
 
     /// Time (s) since the start of the first dynamic stage; after a communication step exactly its t + h.
     pub fn time(&self) -> f64 {
-        let (own, told) = (self.grid_time(), self.progress.told);
-        if (own - told).abs() <= self.same_time(own) { told } else { own }
+        let (own, host) = (self.grid_time(), self.progress.host_time);
+        if (own - host).abs() <= self.same_time(own) { host } else { own }
     }
 
     /// Time (s) as whole internal steps and a part of one make it.

@@ -95,12 +95,13 @@ impl Cosimulation {
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
         let Saved { hash: _, state, grid, progress, checked: _ } = saved;
-        let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, told } = *progress;
+        let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, host_time } =
+            *progress;
         self.simulation.check(state)?;
         fit::at_most("origin", origin, state.step)?;
         fit::between("start", start, 0.0, fit::TIME)?;
         fit::between("initial_residual", initial_residual, 0.0, f64::INFINITY)?;
-        fit::number("told", told, fit::TIME)?;
+        fit::number("host_time", host_time, fit::TIME)?;
         let Some(grid) = grid else { return Ok(()) };
         let named = |unfit: Unfit| Unfit { what: format!("grid: {}", unfit.what), ..unfit };
         self.simulation.check(grid).map_err(named)?;

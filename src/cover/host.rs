@@ -76,8 +76,8 @@ impl Covers {
         self.element_covers.iter().map(quality).collect()
     }
 
-    /// Of two elements that meet at a point of the boundary, the one that carries the point where they do not move it
-    /// alike: the one that is no sliver, or else the host of the heavier. Mirrored, it is the same one.
+    /// The one of two elements that carries a point between them: the one that is no sliver, else the host of the
+    /// heavier. It does not depend on their order.
     pub(crate) fn carriers(&self) -> impl Fn(ElementId, ElementId) -> ElementId {
         let quality = self.qualities();
         move |before, after| {

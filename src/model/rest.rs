@@ -32,9 +32,9 @@ impl Simulation {
         Some((ramp, self.stage().convergence.unwrap_or(CONVERGENCE)))
     }
 
-    /// Whether a static stage has converged: ramp over, forces balanced, motion died out. A few blocks that rattle or
-    /// fall do not hold it up ([`Simulation::mass_of_few`]): it has converged, too, when the motion of all others has
-    /// died out for as long as it took to do so, and as waves take to pass, and the few had more energy in that time.
+    /// Whether a static stage has converged: ramp over, forces balanced, motion died out. It has also converged when the
+    /// rest has been still for the time that it needed, and for the time of waves, and a few blocks
+    /// ([`Simulation::mass_of_few`]), which rattle or fall, held more energy meanwhile.
     pub fn at_rest(&self, report: &StepReport) -> bool {
         let start = self.state().stage_start;
         let is_long = |since: f64| report.time - since >= (since - start).max(self.wave_time());

@@ -16,8 +16,8 @@ const YOUNG: f64 = 4.0;
 const ASPERITY: f64 = 1e-3;
 const HOPS: f64 = 10.0;
 
-/// Finds the mean stress of the faces, which the friction of rough joints follows, and delays the friction of those
-/// contacts of a dynamic step whose faces stay in touch; the first step of a stage says by how much.
+/// Finds the mean stress of the faces, on which the friction of rough joints depends. In dynamic stages it delays
+/// friction on faces in lasting contact; the delay is set in the first step of a stage.
 pub fn delay_friction(
     model: &Model,
     state: &mut State,

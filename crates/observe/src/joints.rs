@@ -189,7 +189,7 @@ impl Joints {
             let mut seen = seen(simulation, &positions, piece);
             seen.state = state(piece);
             seen.bond = piece.edges.map(|edge| bonds[edge.index()]).into_iter().max().unwrap_or_default();
-            // A face that bears without a closed piece bears on all of it.
+            // A loaded face without a closed piece is taken as loaded over its whole length.
             let [closed, open] = closed[piece.face];
             let (over, bears) = if closed > 0.0 { (closed, seen.state != ContactState::Open) } else { (open, true) };
             if bears && over > 0.0 {

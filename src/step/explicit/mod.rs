@@ -5,10 +5,10 @@ mod chunk_runs;
 mod columns;
 mod commit;
 mod damp;
+mod detect;
 mod finish;
 mod kick;
 mod lane_work;
-mod touch;
 mod turn;
 mod works;
 mod yielding;
@@ -28,8 +28,8 @@ use super::{Regime, StepInterval, StepReport, Substep, applied, bonds, guard, qu
 use columns::kick_columns;
 use commit::commit;
 use damp::damp;
+use detect::{approach, detect, open_close, order_contacts, prepare_supports};
 use kick::predict;
-use touch::{answer, approach, arrange, open_close, touch};
 use yielding::yield_rock;
 
 /// Relative change of force above which an unsettled step is redone in halves (Eq. 16).
@@ -64,7 +64,7 @@ impl Integrator for Explicit {
         let step = Substep::new(interval, state.dt_last, workspace.serial);
         set_out(model, state, &step, workspace);
         let Workspace { mass_matrix, motion, frames, selection, contacts, .. } = workspace;
-        touch(model, state, &step, motion.speed_max, frames, selection, contacts);
+        detect(model, state, &step, motion.speed_max, frames, selection, contacts);
         delay_friction(model, state, &step, mass_matrix, selection, contacts);
     }
 
@@ -78,7 +78,7 @@ impl Integrator for Explicit {
     ) {
         let step = Substep::new(interval, state.dt_last, workspace.serial);
         set_out(model, state, &step, workspace);
-        touch_by_pieces(model, state, &step, workspace, see);
+        detect_by_pieces(model, state, &step, workspace, see);
     }
 
     fn kinetic(&self, model: &Model, mass_matrix: &MassMatrix, displacement: &[Vector], velocity: &[Vector]) -> f64 {
@@ -115,11 +115,11 @@ fn cover(
     set_out(model, state, &step, workspace);
     let Workspace { mass_matrix, motion, frames, selection, contacts, supports, sweep, seconds, .. } = workspace;
     let mut clock = Instant::now();
-    touch(model, state, &step, motion.speed_max, frames, selection, contacts);
+    detect(model, state, &step, motion.speed_max, frames, selection, contacts);
     delay_friction(model, state, &step, mass_matrix, selection, contacts);
-    answer(model, state, &step, mass_matrix, motion, supports);
+    prepare_supports(model, state, &step, mass_matrix, motion, supports);
     seconds.entrance += lap(&mut clock);
-    arrange(model, &state.neighbours, mass_matrix, selection, &mut sweep.open_close);
+    order_contacts(model, &state.neighbours, mass_matrix, selection, &mut sweep.open_close);
     let approach = approach(model, state, &step, motion, frames, selection);
     let swept = open_close(model, &step, mass_matrix, &approach, contacts, supports, sweep);
     seconds.sweep += lap(&mut clock);
@@ -138,7 +138,7 @@ fn cover(
 
 /// The contacts of a sub-step, found piece by piece: all together they can be larger than the model. The
 /// near pairs of the state are then of no further use.
-fn touch_by_pieces(
+fn detect_by_pieces(
     model: &Model,
     state: &mut State,
     step: &Substep,
@@ -153,7 +153,7 @@ fn touch_by_pieces(
         state.neighbours.pairs.clear();
         state.neighbours.pairs.extend_from_slice(piece);
         selection.near_sides.forget();
-        touch(model, state, step, motion.speed_max, frames, selection, contacts);
+        detect(model, state, step, motion.speed_max, frames, selection, contacts);
         contacts.iter().for_each(&mut *see);
         rest = others;
     }

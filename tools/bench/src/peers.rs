@@ -22,7 +22,8 @@ const SECONDS: f64 = 1.0;
 /// Element updates that the figure of a continuum is for.
 const UPDATES: f64 = 1e6;
 /// How this program runs.
-const OWN_SETTINGS: &str = "deformable blocks, explicit steps as the case has them, 8-byte numbers";
+const OWN_SETTINGS: &str = "deformable blocks, explicit steps as the case has them, without mass scaling, \
+                            `contact_tolerance` 0.01, 8-byte numbers";
 /// Lines of what a program said that its failure repeats.
 const LAST_LINES: usize = 3;
 

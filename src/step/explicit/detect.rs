@@ -10,7 +10,7 @@ use crate::state::{Model, MotionBuffers, SelectionBuffers, State, SupportBuffers
 use super::{Reach, Regime, Substep, contacts, quiet};
 
 /// Contacts that take part in a sub-step in which no cover is faster than `speed_max` (m/s).
-pub(super) fn touch(
+pub(super) fn detect(
     model: &Model,
     state: &State,
     step: &Substep,
@@ -24,8 +24,8 @@ pub(super) fn touch(
     contacts::entrance(model, state, step, Reach { gap, ahead: step.dt }, frames, selection, contacts);
 }
 
-/// How supports and bolts answer.
-pub(super) fn answer(
+/// Rows of supports and bolts for the iteration.
+pub(super) fn prepare_supports(
     model: &Model,
     state: &State,
     step: &Substep,
@@ -53,7 +53,7 @@ fn load_bolts(model: &Model, state: &State, masses: &MassMatrix, motion: &Motion
 }
 
 /// Order in which the iteration takes the contacts.
-pub(super) fn arrange(
+pub(super) fn order_contacts(
     model: &Model,
     neighbours: &NeighbourList,
     mass_matrix: &MassMatrix,
@@ -65,7 +65,7 @@ pub(super) fn arrange(
     open_close.arrange(&model.boundary, near, mass_matrix, &model.covers.block_ranges.covers, accepted);
 }
 
-/// Motion that the contacts find, and by which they answer.
+/// Motion from which the forces of contacts follow.
 pub(super) fn approach<'a>(
     model: &'a Model,
     state: &'a State,
