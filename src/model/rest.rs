@@ -32,8 +32,8 @@ impl Simulation {
         Some((ramp, self.stage().convergence.unwrap_or(CONVERGENCE)))
     }
 
-    /// Whether a static stage has converged: ramp over, forces balanced, motion died out. It has also converged when the
-    /// rest has been still for the time that it needed, and for the time of waves, and a few blocks
+    /// Whether a static stage has converged: ramp over, forces balanced, motion died out. It has also converged when
+    /// the rest has been still for the time that it needed, and for the time of waves, and a few blocks
     /// ([`Simulation::mass_of_few`]), which rattle or fall, held more energy meanwhile.
     pub fn at_rest(&self, report: &StepReport) -> bool {
         let start = self.state().stage_start;
