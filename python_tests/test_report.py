@@ -31,6 +31,7 @@ OF_BLOCK = [
     ("σxx", "mean_stress_xx [Pa]"),
     ("σyy", "mean_stress_yy [Pa]"),
     ("σxy", "mean_stress_xy [Pa]"),
+    ("Largest penetration", "penetration_max [m]"),
 ]
 # The same of components: number of their row under a name.
 PARTS = [

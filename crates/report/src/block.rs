@@ -3,7 +3,7 @@
 //! A stiff block hardly deforms, so a frame holds the rigid motion of every block, in single precision, and of each
 //! corner only what the rigid motion leaves, in whole quanta: mostly zeros, which take no room.
 
-use crate::data::{BlockFrame, Frame, Outline};
+use crate::data::{Frame, Head, Outline};
 use crate::error::{FilmError, expect, finite};
 use crate::number::{Width, push_integer, push_planes};
 use crate::structures::push_structures;
@@ -14,6 +14,10 @@ pub const QUANTUM: f64 = 1.0 / 131_072.0;
 const QUANTUM_OF_MOTION: f64 = 1.0 / 512.0;
 /// Bit of the state of an edge on which the water presses.
 const WET: u8 = 8;
+/// The first numbers of a block: its rigid motion.
+const MOTION: [&str; 3] = ["displacement_x", "displacement_y", "rotation"];
+/// Numbers of a block, the first ones, with all four bytes: the displacement.
+const FULL: usize = 2;
 /// Smallest quantum over the size of the model: below, single precision of the reference ends.
 const QUANTUM_LEAST: f64 = 1e-12;
 
@@ -28,13 +32,15 @@ pub struct Shape {
     ends: Vec<usize>,
     /// Arm from the centroid of its block to each corner (m).
     arms: Vec<[f64; 2]>,
+    /// Names of the numbers of a block.
+    numbers: Vec<String>,
 }
 
 /// Bytes of the outlines, and what frames need to know of them.
 ///
 /// # Errors
 /// The first number that is not finite, with its block.
-pub fn outlines(outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+pub fn outlines(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
     let points = || outlines.iter().flat_map(|block| block.loops.iter().flatten());
     for block in outlines {
         let numbers = [block.area, block.mass].into_iter().chain(block.centroid);
@@ -57,31 +63,15 @@ pub fn outlines(outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
         bytes.extend((block.loops.len() as u32).to_le_bytes());
         block.loops.iter().for_each(|points| bytes.extend((points.len() as u32).to_le_bytes()));
     }
-    let shape = push_places(outlines, origin, size, &mut bytes);
+    let numbers: Vec<String> = head.block_numbers.iter().map(|number| number.name.clone()).collect();
+    expect(
+        "numbers of the motion of a block",
+        numbers.iter().zip(MOTION).filter(|(a, b)| a == b).count(),
+        MOTION.len(),
+    )?;
+    let mut shape = Shape { origin, size, ends: Vec::new(), arms: Vec::new(), numbers };
+    shape.push_places(outlines, &mut bytes);
     Ok((bytes, shape))
-}
-
-/// Appends centroids and corners relative to the origin in single precision.
-fn push_places(outlines: &[Outline], origin: [f64; 2], size: f64, bytes: &mut Vec<u8>) -> Shape {
-    let near = |place: [f64; 2]| [(place[0] - origin[0]) as f32, (place[1] - origin[1]) as f32];
-    let mut shape = Shape { origin, size, ends: Vec::new(), arms: Vec::new() };
-    let (mut centroids, mut corners) = (Vec::new(), Vec::new());
-    for block in outlines {
-        let centroid = near(block.centroid);
-        centroids.push(centroid);
-        for corner in block.loops.iter().flatten().map(|&corner| near(corner)) {
-            corners.push(corner);
-            shape.arms.push([0, 1].map(|axis| f64::from(corner[axis]) - f64::from(centroid[axis])));
-        }
-        shape.ends.push(shape.arms.len());
-    }
-    for places in [centroids, corners] {
-        for axis in [0, 1] {
-            let numbers: Vec<f32> = places.iter().map(|place| place[axis]).collect();
-            push_planes(&numbers, Width::Full, bytes);
-        }
-    }
-    shape
 }
 
 fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> ([f64; 2], [f64; 2]) {
@@ -92,6 +82,28 @@ fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> ([f64; 2], [f64; 2]
 }
 
 impl Shape {
+    /// Appends centroids and corners relative to the origin in single precision.
+    fn push_places(&mut self, outlines: &[Outline], bytes: &mut Vec<u8>) {
+        let origin = self.origin;
+        let near = |place: [f64; 2]| [(place[0] - origin[0]) as f32, (place[1] - origin[1]) as f32];
+        let (mut centroids, mut corners) = (Vec::new(), Vec::new());
+        for block in outlines {
+            let centroid = near(block.centroid);
+            centroids.push(centroid);
+            for corner in block.loops.iter().flatten().map(|&corner| near(corner)) {
+                corners.push(corner);
+                self.arms.push([0, 1].map(|axis| f64::from(corner[axis]) - f64::from(centroid[axis])));
+            }
+            self.ends.push(self.arms.len());
+        }
+        for places in [centroids, corners] {
+            for axis in [0, 1] {
+                let numbers: Vec<f32> = places.iter().map(|place| place[axis]).collect();
+                push_planes(&numbers, Width::Full, bytes);
+            }
+        }
+    }
+
     /// Bytes of a frame of a film with so many monitors and bolts; with its supports when they are `wanted`.
     ///
     /// # Errors
@@ -115,7 +127,7 @@ impl Shape {
         let is_wet = |corner: usize| wet.get(corner).copied().unwrap_or_default();
         let edges = frame.edges.iter().enumerate();
         bytes.extend(edges.map(|(corner, &state)| state as u8 | if is_wet(corner) { WET } else { 0 }));
-        let motion = push_numbers(frame, &mut bytes)?;
+        let motion = self.push_numbers(frame, &mut bytes)?;
         push_monitors(frame, &mut bytes)?;
         self.push_corners(frame, &motion, quantum, &mut bytes);
         push_structures(&frame.structures, frame.time, self.origin, wanted, &mut bytes)?;
@@ -137,6 +149,26 @@ impl Shape {
         Ok(libm::exp2(libm::log2(wanted.min(self.size * QUANTUM).max(least)).floor()))
     }
 
+    /// Appends the numbers of all blocks; returns the rigid motion of each as a reader will have it.
+    fn push_numbers(&self, frame: &Frame, bytes: &mut Vec<u8>) -> Result<Vec<[f32; 3]>, FilmError> {
+        for block in frame.blocks {
+            expect("numbers of a block", block.numbers.len(), self.numbers.len())?;
+        }
+        let mut motion = vec![[0.0_f32; 3]; frame.blocks.len()];
+        for (k, name) in self.numbers.iter().enumerate() {
+            let width = if k < FULL { Width::Full } else { Width::Short };
+            let mut numbers = Vec::with_capacity(frame.blocks.len());
+            for (id, block) in frame.blocks.iter().enumerate() {
+                numbers.push(finite(block.numbers[k], frame.time, || format!("{name} of block {id}"))?);
+            }
+            push_planes(&numbers, width, bytes);
+            if k < MOTION.len() {
+                motion.iter_mut().zip(numbers).for_each(|(motion, number)| motion[k] = width.kept(number));
+            }
+        }
+        Ok(motion)
+    }
+
     /// Appends what the rigid motion of its block leaves of each corner's displacement, in quanta.
     fn push_corners(&self, frame: &Frame, motion: &[[f32; 3]], quantum: f64, bytes: &mut Vec<u8>) {
         let mut rest: [Vec<u8>; 2] = [Vec::new(), Vec::new()];
@@ -156,36 +188,6 @@ impl Shape {
         }
         rest.iter().for_each(|numbers| bytes.extend(numbers));
     }
-}
-
-/// Numbers of a block, in the order of the film: name, width, getter.
-type Quantity = (&'static str, Width, fn(&BlockFrame) -> f64);
-const QUANTITIES: [Quantity; 9] = [
-    ("displacement x", Width::Full, |block| block.displacement[0]),
-    ("displacement y", Width::Full, |block| block.displacement[1]),
-    ("rotation", Width::Short, |block| block.rotation),
-    ("velocity x", Width::Short, |block| block.velocity[0]),
-    ("velocity y", Width::Short, |block| block.velocity[1]),
-    ("angular velocity", Width::Short, |block| block.angular_velocity),
-    ("stress xx", Width::Short, |block| block.stress[0]),
-    ("stress yy", Width::Short, |block| block.stress[1]),
-    ("stress xy", Width::Short, |block| block.stress[2]),
-];
-
-/// Appends the numbers of all blocks; returns the rigid motion of each as a reader will have it.
-fn push_numbers(frame: &Frame, bytes: &mut Vec<u8>) -> Result<Vec<[f32; 3]>, FilmError> {
-    let mut motion = vec![[0.0_f32; 3]; frame.blocks.len()];
-    for (k, (name, width, get)) in QUANTITIES.iter().enumerate() {
-        let mut numbers = Vec::with_capacity(frame.blocks.len());
-        for (number, block) in frame.blocks.iter().enumerate() {
-            numbers.push(finite(get(block), frame.time, || format!("{name} of block {number}"))?);
-        }
-        push_planes(&numbers, *width, bytes);
-        if k < 3 {
-            motion.iter_mut().zip(numbers).for_each(|(motion, number)| motion[k] = width.kept(number));
-        }
-    }
-    Ok(motion)
 }
 
 fn push_monitors(frame: &Frame, bytes: &mut Vec<u8>) -> Result<(), FilmError> {

@@ -11,7 +11,7 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
 /// First bytes of a film; the last of them counts the versions of the format.
-pub const MAGIC: [u8; 8] = *b"enmmfil3";
+pub const MAGIC: [u8; 8] = *b"enmmfil4";
 
 /// Opens the file of a film. A pipe, a socket or a device is not opened at all, so that nothing waits for its other
 /// end.

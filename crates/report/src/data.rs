@@ -17,8 +17,8 @@ pub struct Head {
     pub case_text: String,
     /// Axis of the slider.
     pub axis: Axis,
-    /// Quantities of blocks in frames, beside their displacement; the page shows nothing else.
-    pub quantities: Vec<Quantity>,
+    /// Numbers of blocks in frames, of which the page shows all: first displacement x, y and rotation.
+    pub block_numbers: Vec<BlockNumber>,
     /// Columns of the histories; the first is the time (s).
     pub columns: Vec<Column>,
     /// Monitored points.
@@ -29,14 +29,15 @@ pub struct Head {
     pub rocks: Vec<String>,
 }
 
-/// A quantity of blocks beside their displacement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Velocity and angular velocity.
-    Velocity,
-    /// Mean stress.
-    Stress,
+/// A number of blocks.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BlockNumber {
+    /// Name, such as `velocity_x`, by which the page knows vectors and tensors.
+    pub name: String,
+    /// Unit; empty for a pure number.
+    pub unit: String,
+    /// What it is, in a few words.
+    pub meaning: String,
 }
 
 /// Axis of the slider.
@@ -122,20 +123,12 @@ pub enum EdgeState {
 }
 
 /// A block in a frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct BlockFrame {
     /// Whether the block has been excavated.
     pub removed: bool,
-    /// Displacement of the centroid (m).
-    pub displacement: [f64; 2],
-    /// Rotation (rad).
-    pub rotation: f64,
-    /// Velocity of the centroid (m/s).
-    pub velocity: [f64; 2],
-    /// Angular velocity (rad/s).
-    pub angular_velocity: f64,
-    /// Area mean of the stress xx, yy, xy (Pa).
-    pub stress: [f64; 3],
+    /// Its numbers, in the order of [`Head::block_numbers`].
+    pub numbers: Vec<f64>,
 }
 
 /// A monitored point in a frame.

@@ -20,8 +20,8 @@ mod writer;
 
 pub use block::QUANTUM;
 pub use data::{
-    Axis, BlockFrame, BoltFrame, BoltPlace, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame, MonitorPlace,
-    Note, Outline, Quantity, Structures, SupportFrame, Trial, TrialTable,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
+    MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable,
 };
 pub use error::FilmError;
 pub use page::{edit_page, live_page, write_page};

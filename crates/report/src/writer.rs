@@ -142,7 +142,7 @@ fn checked(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmEr
             finite(value, 0.0, || format!("ends of bolt {:?}", bolt.name))?;
         }
     }
-    block::outlines(outlines)
+    block::outlines(head, outlines)
 }
 
 fn json(value: &impl serde::Serialize, path: &Path) -> Result<Vec<u8>, FilmError> {

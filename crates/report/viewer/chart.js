@@ -38,27 +38,28 @@ function chartsOfBlock(film, k) {
   });
   const charts = [
     chart("displacement", "m", [
-      ["ux", (f) => f.ux[k]],
-      ["uy", (f) => f.uy[k]],
+      ["ux", (f) => f.displacement_x[k]],
+      ["uy", (f) => f.displacement_y[k]],
     ]),
   ];
-  if (film.head.quantities.includes("velocity")) {
+  if (film.has("velocity")) {
     charts.push(
       chart("velocity", "m/s", [
-        ["vx", (f) => f.vx[k]],
-        ["vy", (f) => f.vy[k]],
+        ["vx", (f) => f.velocity_x[k]],
+        ["vy", (f) => f.velocity_y[k]],
       ]),
     );
   }
-  if (film.head.quantities.includes("stress")) {
+  if (film.has("stress")) {
     charts.push(
       chart("stress", "Pa", [
-        ["σxx", (f) => f.sxx[k]],
-        ["σyy", (f) => f.syy[k]],
-        ["σxy", (f) => f.sxy[k]],
+        ["σxx", (f) => f.mean_stress_xx[k]],
+        ["σyy", (f) => f.mean_stress_yy[k]],
+        ["σxy", (f) => f.mean_stress_xy[k]],
       ]),
     );
   }
+  for (const { name, meaning, unit } of film.others()) charts.push(chart(meaning, unit, [[name, (f) => f[name][k]]]));
   return charts;
 }
 

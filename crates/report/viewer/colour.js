@@ -87,7 +87,7 @@ const COLOURS = [
     unit: "m",
     logarithmic: true,
     value: (frame, k, base) =>
-      Math.hypot(frame.ux[k] - (base ? base.ux[k] : 0), frame.uy[k] - (base ? base.uy[k] : 0)),
+      Math.hypot(...PARTS.displacement.map((part) => frame[part][k] - (base ? base[part][k] : 0))),
   },
   {
     key: "velocity",
@@ -95,7 +95,7 @@ const COLOURS = [
     ramp: "viridis",
     unit: "m/s",
     logarithmic: true,
-    value: (frame, k) => Math.hypot(frame.vx[k], frame.vy[k]),
+    value: (frame, k) => Math.hypot(frame.velocity_x[k], frame.velocity_y[k]),
   },
   {
     key: "stress",
@@ -103,17 +103,27 @@ const COLOURS = [
     ramp: "cividis",
     unit: "Pa",
     logarithmic: false,
-    value: (frame, k) => 0.5 * (frame.sxx[k] + frame.syy[k]),
+    value: (frame, k) => 0.5 * (frame.mean_stress_xx[k] + frame.mean_stress_yy[k]),
   },
   { key: "block", name: "Block" },
   { key: "joint", name: "Joint state" },
 ];
 
-// What a film has to colour by; a model as it is built has not moved.
+// What a film has to colour by; a model as it is built has not moved. Keys of the keyboard are places in `COLOURS`.
 function coloursOf(film) {
-  const moves = film.head.command !== "edit";
-  const known = { displacement: moves, block: true, joint: film.frames.some((frame) => frame.edges?.some(Boolean)) };
-  return COLOURS.filter(({ key }) => known[key] || film.head.quantities.includes(key));
+  const has = {
+    displacement: film.head.command !== "edit",
+    velocity: film.has("velocity"),
+    stress: film.has("stress"),
+    block: true,
+    joint: film.frames.some((frame) => frame.edges?.some(Boolean)),
+  };
+  return [...COLOURS.filter(({ key }) => has[key]), ...film.others().map(colourOf)];
+}
+
+// A number of blocks as a colour.
+function colourOf({ name, meaning, unit }) {
+  return { key: name, name: meaning, ramp: "viridis", unit, logarithmic: false, value: (frame, k) => frame[name][k] };
 }
 
 // Smallest to largest value of a quantity over frames; one block in two hundred at either end does not count when

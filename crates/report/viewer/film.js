@@ -1,20 +1,15 @@
 // The film: bytes to typed arrays. `format.md` of the crate has the layout.
 
-const MAGIC = "enmmfil3";
+const MAGIC = "enmmfil4";
 const CHUNK_HEADER = 16;
-// Numbers of a block in a frame, in the order of the film, with the bytes that each takes.
-const NUMBERS = [
-  ["ux", 4],
-  ["uy", 4],
-  ["turn", 3],
-  ["vx", 3],
-  ["vy", 3],
-  ["spin", 3],
-  ["sxx", 3],
-  ["syy", 3],
-  ["sxy", 3],
-];
-// Numbers of a bolt in a frame, likewise.
+// Vectors and tensors among the numbers of blocks; the page shows all others one by one.
+const PARTS = {
+  displacement: ["displacement_x", "displacement_y"],
+  velocity: ["velocity_x", "velocity_y"],
+  stress: ["mean_stress_xx", "mean_stress_yy", "mean_stress_xy"],
+};
+const OWN_ROWS = new Set(["rotation", "angular_velocity", ...Object.values(PARTS).flat()]);
+// Numbers of a bolt in a frame, with the bytes that each takes.
 const BOLT_NUMBERS = [
   ["ux0", 4],
   ["uy0", 4],
@@ -162,7 +157,7 @@ function readOutlines(reader) {
 }
 
 // `before` is the frame before, whose supports still hold unless others follow.
-function readFrame(reader, time, shape, { monitors, bolts }, before) {
+function readFrame(reader, time, shape, { monitors, bolts, block_numbers }, before) {
   const frame = { time, stage: reader.u32() };
   const withEdges = reader.u8() === 1;
   const withSupports = reader.u8() === 1;
@@ -172,7 +167,7 @@ function readFrame(reader, time, shape, { monitors, bolts }, before) {
   const edges = withEdges ? reader.take(shape.corners) : null;
   frame.edges = edges?.map((state) => state & ~WET) ?? null;
   frame.wet = edges?.some((state) => state & WET) ? edges.map((state) => state & WET) : null;
-  for (const [name, width] of NUMBERS) frame[name] = reader.planes(shape.count, width);
+  block_numbers.forEach(({ name }, k) => (frame[name] = reader.planes(shape.count, k < 2 ? 4 : 3)));
   frame.monitors = [];
   for (let k = 0; k < monitors.length; k++) {
     frame.monitors.push({ ux: reader.f32(), uy: reader.f32(), vx: reader.f32(), vy: reader.f32() });
@@ -302,6 +297,16 @@ class Film {
     return low;
   }
 
+  // Whether frames have a vector or tensor of blocks.
+  has(whole) {
+    return PARTS[whole].every((part) => this.head.block_numbers.some(({ name }) => name === part));
+  }
+
+  // Numbers of blocks that are no part of a vector or tensor.
+  others() {
+    return this.head.block_numbers.filter(({ name }) => !OWN_ROWS.has(name));
+  }
+
   // Sum of what a block's rigid motion and its deformation do to each corner (m), at a fraction of the way from one
   // frame to another.
   displace(from, to, part, outX, outY) {
@@ -310,12 +315,12 @@ class Film {
       b = this.frames[to],
       rest = 1 - part;
     for (let k = 0; k < blocks.length; k++) {
-      const ux = a.ux[k] * rest + b.ux[k] * part,
-        uy = a.uy[k] * rest + b.uy[k] * part;
+      const ux = a.displacement_x[k] * rest + b.displacement_x[k] * part,
+        uy = a.displacement_y[k] * rest + b.displacement_y[k] * part;
       // The shorter way round: rotations are known within half a turn.
-      let way = b.turn[k] - a.turn[k];
+      let way = b.rotation[k] - a.rotation[k];
       way -= 2 * Math.PI * Math.round(way / (2 * Math.PI));
-      const turn = a.turn[k] + part * way,
+      const turn = a.rotation[k] + part * way,
         sine = Math.sin(turn),
         less = Math.cos(turn) - 1;
       for (let c = blocks[k].first; c < blocks[k].end; c++) {

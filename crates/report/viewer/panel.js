@@ -64,36 +64,38 @@ function numbersOfBlock(film, k, frame) {
     ["State", rock ? `${state}, ${rock}` : state],
     measured("Area", block.area, "m²"),
     measured("Mass", block.mass, "kg/m"),
-    placed("Centroid x", shape.originX + shape.centreX[k] + frame.ux[k]),
-    placed("Centroid y", shape.originY + shape.centreY[k] + frame.uy[k]),
-    measured("Displacement", Math.hypot(frame.ux[k], frame.uy[k]), "m"),
-    measured("… x", frame.ux[k], "m"),
-    measured("… y", frame.uy[k], "m"),
-    measured("Rotation", frame.turn[k], "rad"),
-    ...(head.quantities.includes("velocity") ? velocityOfBlock(k, frame) : []),
-    ...(head.quantities.includes("stress") ? stressOfBlock(k, frame) : []),
+    placed("Centroid x", shape.originX + shape.centreX[k] + frame.displacement_x[k]),
+    placed("Centroid y", shape.originY + shape.centreY[k] + frame.displacement_y[k]),
+    measured("Displacement", Math.hypot(frame.displacement_x[k], frame.displacement_y[k]), "m"),
+    measured("… x", frame.displacement_x[k], "m"),
+    measured("… y", frame.displacement_y[k], "m"),
+    measured("Rotation", frame.rotation[k], "rad"),
+    ...(film.has("velocity") ? velocityOfBlock(k, frame) : []),
+    ...(film.has("stress") ? stressOfBlock(k, frame) : []),
+    ...film.others().map(({ name, meaning, unit }) => measured(meaning, frame[name][k], unit)),
   ];
 }
 
 function velocityOfBlock(k, frame) {
   return [
-    measured("Speed", Math.hypot(frame.vx[k], frame.vy[k]), "m/s"),
-    measured("… x", frame.vx[k], "m/s"),
-    measured("… y", frame.vy[k], "m/s"),
-    measured("Angular velocity", frame.spin[k], "rad/s"),
+    measured("Speed", Math.hypot(frame.velocity_x[k], frame.velocity_y[k]), "m/s"),
+    measured("… x", frame.velocity_x[k], "m/s"),
+    measured("… y", frame.velocity_y[k], "m/s"),
+    measured("Angular velocity", frame.angular_velocity[k], "rad/s"),
   ];
 }
 
 function stressOfBlock(k, frame) {
-  const [major, minor, angle] = principal(frame.sxx[k], frame.syy[k], frame.sxy[k]);
+  const [xx, yy, xy] = PARTS.stress.map((part) => frame[part][k]);
+  const [major, minor, angle] = principal(xx, yy, xy);
   return [
-    measured("Mean stress", 0.5 * (frame.sxx[k] + frame.syy[k]), "Pa"),
+    measured("Mean stress", 0.5 * (xx + yy), "Pa"),
     measured("σ1 (greatest)", major, "Pa"),
     measured("σ2 (least)", minor, "Pa"),
     measured("σ1 from x axis", angle, "rad"),
-    measured("σxx", frame.sxx[k], "Pa"),
-    measured("σyy", frame.syy[k], "Pa"),
-    measured("σxy", frame.sxy[k], "Pa"),
+    measured("σxx", xx, "Pa"),
+    measured("σyy", yy, "Pa"),
+    measured("σxy", xy, "Pa"),
   ];
 }
 

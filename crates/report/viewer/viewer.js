@@ -64,9 +64,10 @@ class Viewer {
     by("colours").replaceChildren(
       ...coloursOf(this.film).map((colour) => {
         const place = COLOURS.indexOf(colour) + 1;
+        const title = place ? `${colour.name} (${place})` : colour.name;
         const button = element(
           "button",
-          { type: "button", role: "radio", "data-colour": colour.key, title: `${colour.name} (${place})` },
+          { type: "button", role: "radio", "data-colour": colour.key, title },
           colour.name,
         );
         button.addEventListener("click", () => this.setColour(colour));

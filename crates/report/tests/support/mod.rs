@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use enmm_report::{
-    Axis, BlockFrame, BoltFrame, BoltPlace, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace,
-    Outline, Quantity, Structures, SupportFrame,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame,
+    MonitorPlace, Outline, Structures, SupportFrame,
 };
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
@@ -71,21 +71,25 @@ impl Slope {
             let speed = height * 0.2 * time * (1.0 + 0.3 * noise[0]);
             let way = 0.5 * speed * time;
             let rotation = 0.05 * noise[1] * time;
-            let state = BlockFrame {
-                removed: false,
-                displacement: [-0.8 * way, -0.6 * way + 0.01 * noise[2]],
+            let displacement = [-0.8 * way, -0.6 * way + 0.01 * noise[2]];
+            let numbers = vec![
+                displacement[0],
+                displacement[1],
                 rotation,
-                velocity: [-0.8 * speed + 0.1 * noise[3], -0.6 * speed],
-                angular_velocity: 0.05 * noise[1],
-                stress: [-1e5 * (2.0 + noise[4]), -3e5 * (2.0 + noise[5] + 0.1 * time), 1e4 * noise[2]],
-            };
+                -0.8 * speed + 0.1 * noise[3],
+                -0.6 * speed,
+                0.05 * noise[1],
+                -1e5 * (2.0 + noise[4]),
+                -3e5 * (2.0 + noise[5] + 0.1 * time),
+                1e4 * noise[2],
+            ];
             let strain = [noise[4] * 1e-4, noise[5] * 1e-4];
             for corner in block.loops.iter().flatten() {
                 let arm = [corner[0] - block.centroid[0], corner[1] - block.centroid[1]];
                 let (sine, cosine) = rotation.sin_cos();
                 moment.corners.push([
-                    state.displacement[0] + arm[0] * (cosine - 1.0 + strain[0]) - arm[1] * sine,
-                    state.displacement[1] + arm[0] * sine + arm[1] * (cosine - 1.0 + strain[1]),
+                    displacement[0] + arm[0] * (cosine - 1.0 + strain[0]) - arm[1] * sine,
+                    displacement[1] + arm[0] * sine + arm[1] * (cosine - 1.0 + strain[1]),
                 ]);
                 moment.edges.push(if noise[2] > 0.5 {
                     EdgeState::Open
@@ -97,7 +101,7 @@ impl Slope {
                     EdgeState::Lock
                 });
             }
-            moment.blocks.push(state);
+            moment.blocks.push(BlockFrame { removed: false, numbers });
         }
         moment.wet = (0..moment.edges.len()).map(|corner| corner % 3 == 0).collect();
         let support = |k: usize| SupportFrame {
@@ -147,6 +151,9 @@ pub struct Moment {
     pub supports: Vec<SupportFrame>,
 }
 
+/// Numbers of a block.
+const NUMBERS: [&str; 9] = ["displacement_x", "displacement_y", "rotation", "vx", "vy", "spin", "xx", "yy", "xy"];
+
 /// Surface of the water (m).
 pub const SURFACE: [[f64; 2]; 2] = [[0.0, 4.0], [20.0, 9.0]];
 pub const BOLT: BoltFrame = BoltFrame { condition: 2, displacement: [[0.5, -0.25], [0.125, -1.0]], force: 112_345.0 };
@@ -174,6 +181,7 @@ impl Moment {
 }
 
 pub fn head() -> Head {
+    let number = |name: &str| BlockNumber { name: name.to_owned(), unit: "m".to_owned(), meaning: name.to_owned() };
     let column = |name: &str, quantity: &str, unit: &str| Column {
         name: name.to_owned(),
         quantity: quantity.to_owned(),
@@ -186,7 +194,7 @@ pub fn head() -> Head {
         case_file: "synthetic.toml".to_owned(),
         case_text: "title = \"</script>\"".to_owned(),
         axis: Axis::time(),
-        quantities: vec![Quantity::Velocity, Quantity::Stress],
+        block_numbers: NUMBERS.map(number).into(),
         columns: vec![column("time", "time", "s"), column("wave", "Displacement", "m")],
         monitors: vec![MonitorPlace { name: "crest".to_owned(), place: [1.0, 2.0] }],
         bolts: vec![BoltPlace { name: "row".to_owned(), ends: [[0.5, 1.0], [6.0, 2.0]] }],
@@ -199,7 +207,7 @@ pub type Chunk = (String, f64, Vec<u8>);
 
 /// All chunks, read by what `format.md` says alone.
 pub fn chunks(film: &[u8]) -> Vec<Chunk> {
-    assert_eq!(&film[..8], b"enmmfil3");
+    assert_eq!(&film[..8], b"enmmfil4");
     let (mut rest, mut chunks) = (&film[8..], Vec::new());
     while !rest.is_empty() {
         let kind = String::from_utf8(rest[..4].to_vec()).unwrap();

@@ -7,16 +7,32 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use enmm_report::{
-    Axis, BlockFrame, Column, EdgeState, FilmError, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace, Note, Outline,
-    PAGE, Quantity, Structures, write_page,
+    Axis, BlockFrame, BlockNumber, Column, EdgeState, FilmError, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace,
+    Note, Outline, PAGE, Structures, write_page,
 };
 
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, EdgeId};
 use enmm_io::LoadedCase;
-use enmm_observe::{BlockState, BondState, ContactState, bond_states, node_loops};
+use enmm_observe::{BLOCK_QUANTITIES, BlockState, BondState, ContactState, Quantity, bond_states, node_loops};
 use structures::{Beside, bolt_places};
+
+/// Numbers of blocks in the film of a model that moves, by their names in `blocks.csv`.
+pub const NUMBERS: &[&str] = &[
+    "displacement_x",
+    "displacement_y",
+    "rotation",
+    "velocity_x",
+    "velocity_y",
+    "angular_velocity",
+    "mean_stress_xx",
+    "mean_stress_yy",
+    "mean_stress_xy",
+    "penetration_max",
+];
+/// Those in the film of a mechanism or of a model that has not moved.
+pub const MOTION: &[&str] = NUMBERS.split_at(3).0;
 
 /// A film of a model.
 #[derive(Debug)]
@@ -24,6 +40,8 @@ pub struct Film {
     writer: FilmWriter,
     path: PathBuf,
     page: PathBuf,
+    /// Getters of the numbers of blocks in frames.
+    numbers: Vec<fn(&BlockState) -> f64>,
     /// Boundary point of each corner, blocks in order, the outer loop of each first.
     corners: Vec<EdgeId>,
 }
@@ -37,8 +55,8 @@ pub struct Opening<'a> {
     pub film: PathBuf,
     /// Axis of the slider.
     pub axis: Axis,
-    /// Quantities of blocks in frames, beside their displacement.
-    pub quantities: Vec<Quantity>,
+    /// Numbers of blocks in frames, by name.
+    pub numbers: &'static [&'static str],
     /// Names and units of the columns of the histories, the time first.
     pub columns: &'a [(String, &'static str)],
 }
@@ -57,12 +75,14 @@ impl Film {
     ) -> io::Result<Self> {
         let (outlines, corners) = outlines(simulation);
         let path = opening.film.clone();
-        let head = head(loaded, simulation, opening);
+        let shown: Vec<&Quantity<BlockState>> = opening.numbers.iter().filter_map(|name| number(name)).collect();
+        let numbers = shown.iter().map(|quantity| quantity.get).collect();
+        let head = head(loaded, simulation, opening, &shown);
         let writer = match until {
             Some(until) => FilmWriter::resume(&path, &head, &outlines, until),
             None => FilmWriter::create(&path, &head, &outlines),
         };
-        Ok(Self { writer: writer.map_err(refused)?, path, page: directory.join(PAGE), corners })
+        Ok(Self { writer: writer.map_err(refused)?, path, page: directory.join(PAGE), numbers, corners })
     }
 
     /// Appends the model as it is now.
@@ -93,7 +113,7 @@ impl Film {
             .frame(&Frame {
                 time,
                 stage: simulation.state().stage,
-                blocks: &simulation.block_states().iter().map(block_frame).collect::<Vec<_>>(),
+                blocks: &simulation.block_states().iter().map(|block| self.block_frame(block)).collect::<Vec<_>>(),
                 corners: &self.corners.iter().map(displacement).collect::<Vec<_>>(),
                 edges: &self.corners.iter().map(|&point| states[point]).collect::<Vec<_>>(),
                 monitors: &(0..simulation.case().monitors.len()).map(monitor).collect::<Vec<_>>(),
@@ -119,8 +139,9 @@ impl Film {
             .enumerate()
             .map(|(k, state)| {
                 let (displacement, rotation) = motion(k);
-                let displacement = [displacement.x, displacement.y];
-                BlockFrame { removed: state.removed, displacement, rotation, ..BlockFrame::default() }
+                let mut numbers = vec![displacement.x, displacement.y, rotation];
+                numbers.resize(self.numbers.len(), 0.0);
+                BlockFrame { removed: state.removed, numbers }
             })
             .collect();
         let moved = |place: Point, block: BlockId| {
@@ -146,6 +167,10 @@ impl Film {
                 structures: beside.structures(),
             })
             .map_err(refused)
+    }
+
+    fn block_frame(&self, state: &BlockState) -> BlockFrame {
+        BlockFrame { removed: state.removed, numbers: self.numbers.iter().map(|get| get(state)).collect() }
     }
 
     /// Whether the water presses on the edge behind each corner; empty without water.
@@ -185,7 +210,12 @@ fn refused(error: FilmError) -> io::Error {
     io::Error::other(error)
 }
 
-fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening) -> Head {
+/// The quantity of blocks of that name.
+fn number(name: &str) -> Option<&'static Quantity<BlockState>> {
+    BLOCK_QUANTITIES.iter().find(|quantity| quantity.name == name)
+}
+
+fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &[&Quantity<BlockState>]) -> Head {
     let case = simulation.case();
     let monitors =
         case.monitors.iter().map(|monitor| MonitorPlace { name: monitor.name.clone(), place: monitor.point });
@@ -194,6 +224,11 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening) -> Head 
         quantity: quantity(name, unit).to_owned(),
         unit: (*unit).to_owned(),
     };
+    let number = |quantity: &&Quantity<BlockState>| BlockNumber {
+        name: quantity.name.to_owned(),
+        unit: quantity.unit.to_owned(),
+        meaning: quantity.text.to_owned(),
+    };
     Head {
         title: case.title.clone(),
         command: opening.command.to_owned(),
@@ -201,7 +236,7 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening) -> Head 
         case_file: loaded.source.file().to_owned(),
         case_text: loaded.source.text().to_owned(),
         axis: opening.axis,
-        quantities: opening.quantities,
+        block_numbers: shown.iter().map(number).collect(),
         columns: opening.columns.iter().map(column).collect(),
         monitors: monitors.collect(),
         bolts: bolt_places(simulation),
@@ -251,17 +286,6 @@ fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<EdgeId>) {
     };
     let outlines = loops.iter_mut().zip(&states).map(outline).collect();
     (outlines, loops.into_iter().flatten().flatten().collect())
-}
-
-fn block_frame(state: &BlockState) -> BlockFrame {
-    BlockFrame {
-        removed: state.removed,
-        displacement: [state.displacement.x, state.displacement.y],
-        rotation: state.rotation,
-        velocity: [state.velocity.x, state.velocity.y],
-        angular_velocity: state.angular_velocity,
-        stress: state.mean_stress,
-    }
 }
 
 /// State of each edge of the boundary.

@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::check::count_of_notes;
-use crate::film::{Film, Opening};
+use crate::film::{Film, NUMBERS, Opening};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
 use crate::motion::PermanentMotion;
@@ -21,7 +21,7 @@ use enmm::model::case::{Invalid, StageKind};
 use enmm::model::{Restless, Simulation, StepError, StepReport, settle};
 use enmm_io::LoadedCase;
 use enmm_observe::{Joints, Snapshot};
-use enmm_report::{Axis, FILM, Note, Quantity};
+use enmm_report::{Axis, FILM, Note};
 
 use super::concurrency::Concurrency;
 use super::outlook::Outlook;
@@ -411,13 +411,8 @@ fn film(
     warnings: &[String],
 ) -> io::Result<Film> {
     let columns = rows::columns(simulation.case());
-    let opening = Opening {
-        command: "run",
-        film: directory.join(FILM),
-        axis: Axis::time(),
-        quantities: vec![Quantity::Velocity, Quantity::Stress],
-        columns: &columns,
-    };
+    let opening =
+        Opening { command: "run", film: directory.join(FILM), axis: Axis::time(), numbers: NUMBERS, columns: &columns };
     let until = resumed.then(|| kept_until(simulation));
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;
     for text in warnings {
