@@ -55,7 +55,7 @@ const DAMAGES: [Damage; 30] = [
     ("events.list[0].subject", |w| w.state.events.list[0].subject = 1000),
     ("ledger", |w| w.state.ledger.friction = f64::NAN),
     ("counters.dt_min", |w| w.state.counters.dt_min = f64::INFINITY),
-    ("told", |w| w.progress.told = f64::NAN),
+    ("host_time", |w| w.progress.told = f64::NAN),
     ("grid: displacement[2].y", |w| {
         if let Some(grid) = &mut w.grid {
             grid.displacement[2].y = f64::INFINITY;

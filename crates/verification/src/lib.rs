@@ -1,9 +1,8 @@
 //! Verification problems with exact answers: each builds its models from its parameters, runs them and sets computed
 //! values beside exact ones. Nothing here knows a number that the formula of the problem does not give.
-
 //!
 //! [`choose`] makes jobs from the request of a user, [`solve_all`] solves them, [`Record`] is what came out as data,
-//! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side. [`bench`] times
+//! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side. [`mod@bench`] times
 //! standard models.
 
 pub mod bench;
