@@ -180,26 +180,26 @@ fn slope(seed: u64) -> String {
     )
 }
 
-/// Slopes in which faces bend into each other between nodes: expected to overlap without a spring, by 0.12 to 0.37 % of
+/// Slopes in which faces bend into each other between nodes: expected to overlap without a spring, by 0.16 to 0.36 % of
 /// the mesh size (CHANGELOG, known defects).
-const BENT: [u64; 5] = [4, 5, 9, 10, 15];
+const BENT: [u64; 4] = [4, 9, 10, 15];
 
-/// The slope fails without overlap, and its rock is no faster than a fall over its height makes it, 10 % to spare.
-fn fails_cleanly(seed: u64) {
+/// Whether the slope fails without an overlap that no spring holds. Overlaps are small in any case, and rock is no faster
+/// than a fall over the height of the slope makes it, 10 % to spare.
+fn fails_cleanly(seed: u64) -> bool {
     let mut simulation = simulation(&slope(seed));
     run_stage(&mut simulation);
     simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));
     let worst = watch(&mut simulation, 5);
     println!("slope {seed}");
-    let [is_held, is_bent] = [worst.unheld < ledge(), BENT.contains(&seed)];
-    assert!(is_held || is_bent, "slope {seed}: {worst:?}");
-    assert!(!is_held || !is_bent, "slope {seed} is known to overlap and does not: take it off the list");
-    assert!(worst.unheld < 4.0 * ledge(), "slope {seed}: {worst:?}");
-    assert!(worst.overlap < 0.01 * SIZE, "slope {seed}: {worst:?}");
+    assert!(worst.overlap < 0.01 * SIZE && worst.unheld < 4.0 * ledge(), "slope {seed}: {worst:?}");
     assert!(worst.speed > 2.0 && worst.speed < 1.1 * (2.0 * G * 15.0f64).sqrt(), "slope {seed}: {worst:?}");
+    worst.unheld < ledge()
 }
 
 #[test]
 fn long_small_slopes_fail_cleanly() {
-    (0..by_extent([1, 2, 16])).for_each(fails_cleanly);
+    let seeds = by_extent([1, 2, 16]);
+    let bent: Vec<u64> = (0..seeds).filter(|&seed| !fails_cleanly(seed)).collect();
+    assert_eq!(bent, BENT.into_iter().filter(|&seed| seed < seeds).collect::<Vec<_>>(), "as known");
 }
