@@ -184,8 +184,8 @@ fn slope(seed: u64) -> String {
 /// the mesh size (CHANGELOG, known defects).
 const BENT: [u64; 4] = [4, 9, 10, 15];
 
-/// Whether the slope fails without an overlap that no spring holds. Overlaps are small in any case, and rock is no faster
-/// than a fall over the height of the slope makes it, 10 % to spare.
+/// Whether the slope fails without an overlap that no spring holds. Overlaps are small in any case, and rock is no
+/// faster than a fall over the height of the slope makes it, 10 % to spare.
 fn fails_cleanly(seed: u64) -> bool {
     let mut simulation = simulation(&slope(seed));
     run_stage(&mut simulation);
