@@ -1,4 +1,5 @@
 //! Writes the licences of all crates in the libraries, and the list of these crates, for `src/pack.rs`.
+#![forbid(unsafe_code)]
 
 mod parts;
 

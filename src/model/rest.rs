@@ -12,6 +12,7 @@ const CONVERGENCE: f64 = 1e-4;
 const REST: f64 = 1e-8;
 /// Displacement, relative to the height of the model, within the time of a fall from it, of rock that is at rest.
 const STILL: f64 = 1e-6;
+
 /// Energy (J/m) that a static stage has turned over.
 fn energy(report: &StepReport) -> f64 {
     report.ledger.potential.abs().max(report.ledger.strain.abs())

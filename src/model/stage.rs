@@ -1,4 +1,4 @@
-//! What changes when a stage begins: blocks that are dug away, laws, supports, bolts, water.
+//! Changes at the start of a stage: blocks that are dug away, laws, supports, bolts, water.
 
 use crate::contact::{BoltState, JointLaw, LawId};
 use crate::cover::BlockId;

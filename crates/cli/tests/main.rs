@@ -4,6 +4,8 @@ mod bad_input;
 mod bench;
 mod bound;
 mod edit;
+#[path = "../../../tests/common/extent.rs"]
+mod extent;
 mod fmu;
 mod fos;
 mod import;

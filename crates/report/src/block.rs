@@ -15,7 +15,7 @@ const QUANTUM_OF_MOTION: f64 = 1.0 / 512.0;
 /// Bit of the state of an edge on which the water presses.
 const WET: u8 = 8;
 /// The first numbers of a block: its rigid motion.
-const MOTION: [&str; 3] = ["displacement_x", "displacement_y", "rotation"];
+pub const MOTION: [&str; 3] = ["displacement_x", "displacement_y", "rotation"];
 /// Numbers of a block, the first ones, with all four bytes: the displacement.
 const FULL: usize = 2;
 /// Smallest quantum over the size of the model: below, single precision of the reference ends.

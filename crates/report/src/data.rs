@@ -36,7 +36,7 @@ pub struct BlockNumber {
     pub name: String,
     /// Unit; empty for a pure number.
     pub unit: String,
-    /// What it is, in a few words.
+    /// Meaning in a few words.
     pub meaning: String,
 }
 

@@ -6,6 +6,7 @@
 //! results on paper.
 //!
 //! `format.md` beside this crate's sources describes every byte of a film and how accurate it is.
+#![forbid(unsafe_code)]
 
 mod block;
 mod chunk;
@@ -18,7 +19,7 @@ mod serve;
 mod structures;
 mod writer;
 
-pub use block::QUANTUM;
+pub use block::{MOTION, QUANTUM};
 pub use data::{
     Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
     MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable,

@@ -87,7 +87,10 @@ const COLOURS = [
     unit: "m",
     logarithmic: true,
     value: (frame, k, base) =>
-      Math.hypot(...PARTS.displacement.map((part) => frame[part][k] - (base ? base[part][k] : 0))),
+      Math.hypot(
+        frame.displacement_x[k] - (base ? base.displacement_x[k] : 0),
+        frame.displacement_y[k] - (base ? base.displacement_y[k] : 0),
+      ),
   },
   {
     key: "velocity",

@@ -4,9 +4,9 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use enmm_report::{Axis, FILM, Fact, Marked, Note, Trial as Row, TrialTable};
+use enmm_report::{Axis, FILM, Fact, MOTION, Marked, Note, Trial as Row, TrialTable};
 
-use crate::film::{Film, MOTION, NUMBERS, Opening};
+use crate::film::{Film, NUMBERS, Opening};
 use crate::found::{Found, remedy};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
@@ -58,7 +58,7 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: MOTION, columns: &[] };
+    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: &MOTION, columns: &[] };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     let moving = &bound.level_tops.mechanism;
     let reach = SHOWN * greater_side(&simulation);
@@ -94,7 +94,7 @@ pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Brack
     let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: MOTION, columns: &[] };
+    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: &MOTION, columns: &[] };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     film.frame_at(&simulation, 0.0)?;
     let reach = SHOWN * greater_side(&simulation);

@@ -4,6 +4,7 @@
 //! [`choose`] makes jobs from the request of a user, [`solve_all`] solves them, [`Record`] is what came out as data,
 //! [`report`] writes the manual from it, and [`comparison`] sets both integrators side by side. [`mod@bench`] times
 //! standard models.
+#![forbid(unsafe_code)]
 
 pub mod bench;
 pub mod comparison;

@@ -31,8 +31,6 @@ pub const NUMBERS: &[&str] = &[
     "mean_stress_xy",
     "penetration_max",
 ];
-/// Those in the film of a mechanism or of a model that has not moved.
-pub const MOTION: &[&str] = NUMBERS.split_at(3).0;
 
 /// A film of a model.
 #[derive(Debug)]
@@ -302,4 +300,15 @@ fn edge_states(simulation: &Simulation) -> Vec<EdgeState> {
         BondState::Broken => EdgeState::Broken,
     };
     enmm_observe::edge_states(simulation).into_iter().zip(bond_states(simulation)).map(with_bond).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_a_film_is_in_the_table_of_blocks_and_the_motion_comes_first() {
+        assert!(NUMBERS.iter().all(|name| number(name).is_some()));
+        assert!(NUMBERS.starts_with(&enmm_report::MOTION));
+    }
 }

@@ -1,6 +1,5 @@
-//! What a run warns of.
+//! Warnings of a run.
 
-use crate::run::RunError;
 use enmm::model::case::{Integrator, StageKind};
 use enmm::model::tables::BlockId;
 use enmm::model::{Event, EventKind, Restless, Simulation};
@@ -8,7 +7,7 @@ use enmm_report::Note;
 use enmm_stability::corners::{CarryingCorner, carrying_corners};
 use enmm_stability::strength_reduction::slide;
 
-use super::Driver;
+use super::{Driver, RunError};
 
 /// Blocks that a warning names.
 const NAMED: usize = 3;
@@ -105,7 +104,7 @@ impl Driver<'_> {
         ))
     }
 
-    /// Warns of corners that carry more than rock bears.
+    /// Warns of corners that carry more than their rock can.
     pub(super) fn warn_of_corners(&mut self) -> Result<(), RunError> {
         let corners: Vec<String> = carrying_corners(&self.simulation).iter().map(CarryingCorner::text).collect();
         if corners.is_empty() {
