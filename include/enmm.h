@@ -32,6 +32,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#if defined(__GNUC__) && !defined(__cplusplus)
+#define ENMM_UNION __extension__ union
+#else
+#define ENMM_UNION union
+#endif
+
 /**
  * Version of the binary interface: changes when a program that was built before would no longer work.
  */
@@ -326,7 +332,7 @@ typedef struct enmm_step_info {
    */
   size_t event_count;
   /**
-   * Index of the first of them for enmm_get_events.
+   * Index of the first of them (enmm_get_events takes it).
    */
   size_t first_event;
   /**
@@ -368,7 +374,7 @@ typedef struct enmm_block_state {
    */
   double centroid_x;
   /**
-   * Mass centroid now, y (m, upwards).
+   * Mass centroid now, y up (m).
    */
   double centroid_y;
   /**
@@ -376,11 +382,11 @@ typedef struct enmm_block_state {
    */
   double displacement_x;
   /**
-   * Displacement of the mass centroid, y (m).
+   * Displacement of the mass centroid, y up (m).
    */
   double displacement_y;
   /**
-   * Rotation (rad, counter-clockwise, within -pi and pi).
+   * Rotation, counter-clockwise, within -pi and pi (rad).
    */
   double rotation;
   /**
@@ -388,31 +394,31 @@ typedef struct enmm_block_state {
    */
   double velocity_x;
   /**
-   * Velocity of the mass centroid, y (m/s).
+   * Velocity of the mass centroid, y up (m/s).
    */
   double velocity_y;
   /**
-   * Angular velocity (rad/s, counter-clockwise).
+   * Angular velocity, counter-clockwise (rad/s).
    */
   double angular_velocity;
   /**
-   * Area mean of the stress, xx (Pa, tension positive).
+   * Area mean of the stress xx, tension positive (Pa).
    */
   double mean_stress_xx;
   /**
-   * Area mean of the stress, yy (Pa, tension positive).
+   * Area mean of the stress yy, tension positive (Pa).
    */
   double mean_stress_yy;
   /**
-   * Area mean of the stress, xy (Pa).
+   * Area mean of the stress xy (Pa).
    */
   double mean_stress_xy;
   /**
-   * Area before any deformation (m2).
+   * Area in the reference configuration (m2).
    */
   double area;
   /**
-   * Mass (kg per metre of thickness).
+   * Mass (kg/m).
    */
   double mass;
   /**
@@ -426,7 +432,7 @@ typedef struct enmm_block_state {
   /**
    * Contacts on the block that carry force.
    */
-  uint32_t contact_count;
+  ENMM_UNION { uint32_t contacts; uint32_t contact_count; };
   /**
    * 0.
    */
@@ -434,11 +440,15 @@ typedef struct enmm_block_state {
   /**
    * Largest penetration of its contacts (m).
    */
-  double largest_penetration;
+  ENMM_UNION { double penetration_max; double largest_penetration; };
+  /**
+   * Speed of the centroid (m/s).
+   */
+  double speed;
 } enmm_block_state;
 
 /**
- * Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping + yielding
+ * Energies now and works since the start, per metre of thickness. kinetic + strain + potential + damping + yielding
  * equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.
  */
 typedef struct enmm_energies {
@@ -447,79 +457,79 @@ typedef struct enmm_energies {
    */
   size_t struct_size;
   /**
-   * Kinetic energy.
+   * Kinetic energy (J/m).
    */
   double kinetic;
   /**
-   * Strain energy.
+   * Strain energy (J/m).
    */
   double strain;
   /**
-   * Potential energy of gravity, from the undeformed state on.
+   * Potential energy of gravity, from the undeformed state on (J/m).
    */
   double potential;
   /**
-   * Energy in the springs of contacts and supports.
+   * Energy in contact and support springs (J/m).
    */
   double stored;
   /**
-   * Energy that slip turned into heat.
+   * Energy turned into heat by slip (J/m).
    */
   double friction;
   /**
-   * Work of contact forces on the blocks.
+   * Work of contact forces on the blocks (J/m).
    */
   double contact_work;
   /**
-   * Work of supports on the blocks.
+   * Work of supports on the blocks (J/m).
    */
   double support_work;
   /**
-   * Energy that damping took.
+   * Energy taken by damping (J/m).
    */
   double damping;
   /**
-   * Work of loads and inputs, and of gravity while it grows or changes.
+   * Work of loads and inputs, and of gravity while it grows or changes (J/m).
    */
   double external_work;
   /**
-   * Energy of the start, less what left with excavated blocks.
+   * Energy of the start, less what left with excavated blocks (J/m).
    */
   double baseline;
   /**
-   * Energy that contacts lost in other ways than slip.
+   * Energy that contacts and supports lost in other ways than slip (J/m).
    */
   double contact_dissipation;
   /**
-   * Energy that appeared from nowhere: the error of the time steps.
+   * Energy that appeared from nowhere: the error of the time steps (J/m).
    */
   double residual;
   /**
-   * Energy that yielding rock took.
+   * Energy taken by yielding rock (J/m).
    */
   double yielding;
   /**
-   * Work of bolts on the blocks.
+   * Work of bolts on the blocks (J/m).
    */
   double bolt_work;
   /**
-   * Work of quiet boundaries and free-field columns: less what waves carry away.
+   * Work of quiet boundaries and free-field columns: less what waves carry away (J/m).
    */
   double radiation;
   /**
-   * Energy in bolts.
+   * Energy in bolts (J/m).
    */
   double bolt_stored;
   /**
-   * Energy that bolts were installed with by their pretension.
+   * Energy that bolts were installed with by their pretension (J/m).
    */
   double bolt_installed;
   /**
-   * Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored.
+   * Energy that bolts lost by yielding and rupture: installed less work and stored (J/m).
    */
   double bolt_dissipation;
   /**
-   * Energy of fracture of joints that soften.
+   * Energy of fracture of joints that soften (J/m).
    */
   double fracture;
 } enmm_energies;
@@ -533,23 +543,23 @@ typedef struct enmm_totals {
    */
   size_t struct_size;
   /**
-   * Largest displacement (m).
+   * Largest displacement of a cover (m).
    */
   double displacement_max;
   /**
-   * Largest velocity (m/s).
+   * Largest velocity of a cover (m/s).
    */
   double velocity_max;
   /**
-   * Largest penetration of the whole run (m).
+   * Largest penetration so far (m).
    */
   double penetration_max;
   /**
-   * Net over applied force; near 0 at rest. Where nothing is applied it is 1, or 0 when all is balanced.
+   * Net over applied force, near 0 at rest; where nothing is applied 1, or 0 when all is balanced.
    */
   double unbalanced;
   /**
-   * Critical internal step (s).
+   * Stability limit of the internal step (s).
    */
   double critical_dt;
   /**
@@ -577,7 +587,7 @@ typedef struct enmm_totals {
    */
   uint32_t failed_blocks;
   /**
-   * Greatest depth of overlaps of blocks so far (m), see ENMM_EVENT_OVERLAPPED; 0 for none.
+   * Greatest depth of overlaps of blocks so far, 0 for none (m).
    */
   double overlap_max;
   /**
@@ -585,7 +595,7 @@ typedef struct enmm_totals {
    */
   uint64_t overlapping_pairs;
   /**
-   * Bonded length that has broken, of rock bridges and joints with an energy of fracture (m).
+   * Bonded length of rock bridges and joints that has broken (m).
    */
   double broken_length;
   /**
@@ -684,7 +694,8 @@ typedef struct enmm_event {
 
 /**
  * A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
- * last three. What is not filled is 0.
+ * last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
+ * mean along it.
  */
 typedef struct enmm_port_state {
   /**
@@ -692,51 +703,51 @@ typedef struct enmm_port_state {
    */
   size_t struct_size;
   /**
-   * Displacement of the mass centroid, or mean along the boundary, x (m).
+   * Displacement, x (m).
    */
   double displacement_x;
   /**
-   * The same, y (m).
+   * Displacement, y up (m).
    */
   double displacement_y;
   /**
-   * Velocity of the mass centroid, or mean along the boundary, x (m/s).
+   * Velocity, x (m/s).
    */
   double velocity_x;
   /**
-   * The same, y (m/s).
+   * Velocity, y up (m/s).
    */
   double velocity_y;
   /**
-   * Rotation of the block (rad, counter-clockwise).
+   * Rotation, counter-clockwise (rad).
    */
   double rotation;
   /**
-   * Angular velocity of the block (rad/s, counter-clockwise).
+   * Angular velocity, counter-clockwise (rad/s).
    */
   double angular_velocity;
   /**
-   * Sum of the contact forces on the block, x (N/m).
+   * Sum of the contact forces on the block per metre, x (N/m).
    */
   double contact_force_x;
   /**
-   * The same, y (N/m).
+   * Sum of the contact forces on the block per metre, y (N/m).
    */
   double contact_force_y;
   /**
-   * Mean stress in the block, or in the blocks along the boundary, xx (Pa, tension positive).
+   * Mean stress xx, tension positive (Pa).
    */
   double stress_xx;
   /**
-   * The same, yy (Pa, tension positive).
+   * Mean stress yy, tension positive (Pa).
    */
   double stress_yy;
   /**
-   * The same, xy (Pa).
+   * Mean stress xy (Pa).
    */
   double stress_xy;
   /**
-   * Sum of the normal forces across the joints (N/m, compression positive).
+   * Sum of the normal forces across the joints, compression positive (N/m).
    */
   double normal_force;
   /**
@@ -744,7 +755,7 @@ typedef struct enmm_port_state {
    */
   double shear_force;
   /**
-   * Largest slip that a contact of the joints has summed up (m).
+   * Largest accumulated slip along the joints (m).
    */
   double slip;
 } enmm_port_state;

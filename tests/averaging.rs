@@ -89,8 +89,9 @@ fn elements_flow_together_as_each_alone() {
     let (mut flowing, mut resting) = (0, 0);
     for _ in 0..by_extent([100, 200, 1000]) {
         let (model, before) = (simulation.model(), simulation.state().clone());
-        let felt = model.felt(&before, 0..model.covers.element_count());
-        let shown: Vec<f64> = model.covers.elements().map(|e| model.plastic_strain_under(&before, e, &felt)).collect();
+        let patches = model.patch_means(&before, 0..model.covers.element_count());
+        let shown: Vec<f64> =
+            model.covers.elements().map(|e| model.plastic_strain_under(&before, e, &patches)).collect();
         advance(&mut simulation, 1);
         let after = &simulation.state().plastic;
         for ((before, after), shown) in before.plastic.iter().zip(after).zip(shown) {

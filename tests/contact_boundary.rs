@@ -1,6 +1,6 @@
 //! Claim: corners, nodes and sides of the boundary are those of the drawing, whatever the constants that find them.
 
-use enmm::model::tables::{Boundary, EntranceRule};
+use enmm::model::tables::{Boundary, DetectionRule};
 use enmm::model::{Simulation, assemble::outlines};
 
 use crate::common::root;
@@ -9,7 +9,7 @@ use crate::common::root;
 /// same ones, but `node_snap` moves those between corners by as much as it says.
 #[test]
 fn no_angle_decides_what_a_corner_is() {
-    type Constant = fn(&mut EntranceRule) -> &mut f64;
+    type Constant = fn(&mut DetectionRule) -> &mut f64;
     let constants: [(&str, Constant); 4] = [
         ("corner_angle", |rule| &mut rule.corner_angle),
         ("kink_angle", |rule| &mut rule.kink_angle),
@@ -22,11 +22,11 @@ fn no_angle_decides_what_a_corner_is() {
         let outlines = outlines(&case).unwrap_or_else(|e| panic!("{e}"));
         let simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
         let covers = &simulation.model().covers;
-        let usual = Boundary::new(covers, &outlines, &EntranceRule::default());
+        let usual = Boundary::new(covers, &outlines, &DetectionRule::default());
         assert_eq!(usual.nodes.point, simulation.model().boundary.nodes.point, "{name}");
         for (constant, of) in constants {
             for factor in [0.5, 2.0] {
-                let mut rule = EntranceRule::default();
+                let mut rule = DetectionRule::default();
                 *of(&mut rule) *= factor;
                 let other = Boundary::new(covers, &outlines, &rule);
                 assert_eq!(other.sides.previous, usual.sides.previous, "{name}: sides with {factor} {constant}");

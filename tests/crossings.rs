@@ -5,7 +5,7 @@ use crate::common::extent::by_extent;
 use crate::common::parts::rock;
 use crate::common::{run_stage, simulation, varied_rules};
 use enmm::model::Simulation;
-use enmm::model::tables::EntranceRule;
+use enmm::model::tables::DetectionRule;
 
 /// Gravity on a plane of 30° in axes along it (m/s²).
 const ALONG: f64 = 4.905;
@@ -23,7 +23,7 @@ struct Plane {
     young: f64,
     friction_deg: f64,
     seconds: f64,
-    rule: EntranceRule,
+    rule: DetectionRule,
 }
 
 impl Plane {
@@ -39,7 +39,7 @@ impl Plane {
             young: 10e9,
             friction_deg: 20.0,
             seconds: 0.6,
-            rule: EntranceRule::default(),
+            rule: DetectionRule::default(),
         }
     }
 
@@ -57,7 +57,7 @@ impl Plane {
             young: 10e9,
             friction_deg,
             seconds: 0.5,
-            rule: EntranceRule::default(),
+            rule: DetectionRule::default(),
         }
     }
 
@@ -92,7 +92,7 @@ impl Plane {
             self.seconds,
             self.friction_deg,
         ))
-        .with_entrance(self.rule);
+        .with_detection(self.rule);
         let report = run_stage(&mut simulation);
         assert!(simulation.at_rest(&report), "{report:?}");
         simulation

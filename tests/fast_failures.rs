@@ -7,7 +7,7 @@ use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation, varied_rules};
 use enmm::model::Simulation;
 use enmm::model::overlap::Audit;
-use enmm::model::tables::EntranceRule;
+use enmm::model::tables::DetectionRule;
 
 const SIZE: f64 = 1.0;
 const G: f64 = 9.81;
@@ -41,7 +41,7 @@ struct Worst {
 
 /// Height (m) of a ledge: a lower one carries nothing, so that rock may overlap by as much without a spring.
 fn ledge() -> f64 {
-    EntranceRule::default().ledge * SIZE
+    DetectionRule::default().ledge * SIZE
 }
 
 /// Runs the stage in progress to its end, with an audit every so many steps: springs explain all overlaps.
@@ -146,7 +146,7 @@ fn no_constant_decides_who_enters() {
                    [[5.0014, 2.005], [5.201, 3.5], [4.801, 3.5]]]";
     for (name, rule) in varied_rules() {
         let more = thrown([5.001, 3.0], [0.0, -10.0]);
-        let mut simulation = case(FLAT, islands, 20.0, 0.05, &more).with_entrance(rule);
+        let mut simulation = case(FLAT, islands, 20.0, 0.05, &more).with_detection(rule);
         let worst = audit(&mut simulation, 1);
         assert!(worst.overlap < 0.01 * SIZE, "{name}: {worst:?}");
         assert_eq!(simulation.state().counters.deep_contacts, 0, "{name}");

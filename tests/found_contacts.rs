@@ -28,8 +28,8 @@ fn contacts(simulation: &Simulation) -> [Vec<VertexEdge>; 2] {
 #[test]
 fn contacts_that_stay_are_those_that_a_step_would_find() {
     let simulation = slope(205);
-    assert!(simulation.state().found.kept_from(simulation.state().step, &simulation.model().entrance).is_some());
-    let (size, stays) = (simulation.model().covers.mesh.size, simulation.model().entrance.stays);
+    assert!(simulation.state().found.kept_from(simulation.state().step, &simulation.model().detection).is_some());
+    let (size, stays) = (simulation.model().covers.mesh.size, simulation.model().detection.stays);
     let [kept, all] = contacts(&simulation);
     let most = all.iter().map(|contact| contact.history.normal_force).fold(0.0, f64::max);
     let key = |contact: &VertexEdge| (contact.history.node, contact.history.side);

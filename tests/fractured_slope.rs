@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::extent::by_extent;
 use crate::common::run_stage;
 use enmm::model::overlap::Audit;
-use enmm::model::tables::EntranceRule;
+use enmm::model::tables::DetectionRule;
 use enmm::model::{Case, Simulation};
 
 /// The case of the README.
@@ -65,7 +65,7 @@ fn rests_and_then_fails(change: f64) {
     assert!(simulation.monitor(0).0.norm() > way, "the crest must move: {:?}", simulation.monitor(0));
     assert!(worst[0] < 0.01 * size, "overlap {worst:?} m");
     // Between two nodes, a mesh size apart, faces bend into each other.
-    let ledge = EntranceRule::default().ledge * size;
+    let ledge = DetectionRule::default().ledge * size;
     assert!(worst[1] < 2.5 * ledge, "overlap that no spring holds: {worst:?} m");
     // A ledge lower than that carries nothing, and one of twice its height in full: a tip that passes the mouth of a
     // crack was between the two for two steps, which audits meet when they are frequent.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use enmm::geometry::Vector;
 use enmm::model::overlap::EVERY;
-use enmm::model::tables::EntranceRule;
+use enmm::model::tables::DetectionRule;
 use enmm::model::{Event, EventKind, Simulation};
 use enmm_io::parse_case;
 
@@ -52,11 +52,11 @@ fn a_block_in_another_is_seen_without_any_contact() {
 /// constants for which there is no contact at all. The square has fallen by 5e-7 m meanwhile.
 #[test]
 fn a_block_is_seen_in_another_where_no_spring_holds_it() {
-    let plain = EntranceRule::default();
-    let none = EntranceRule { flush_sine: 1e-9, opposed_cosine: 1.0, ..plain };
+    let plain = DetectionRule::default();
+    let none = DetectionRule { flush_sine: 1e-9, opposed_cosine: 1.0, ..plain };
     for rule in [plain, none] {
         for (depth, count) in [(0.0015, 0), (0.004, 1), (0.008, 1)] {
-            let found = overlaps(squares().with_entrance(rule), depth, 1.9);
+            let found = overlaps(squares().with_detection(rule), depth, 1.9);
             assert_eq!(found.len(), count, "{rule:?}, {depth} m: {found:?}");
             assert!(found.iter().all(|overlap| (overlap.depth - depth).abs() < 1e-6), "{found:?}");
         }

@@ -1,6 +1,7 @@
 //! The rules of the house, read off the files of the repository. Every check is also seen failing on a small text.
 
 mod circles;
+mod recipes;
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -15,7 +15,7 @@ type Counts = [usize; 3];
 /// Applies the rule to the near sides of the next step, which finds all contacts, and compares.
 fn compare(simulation: &Simulation, case: &str) -> Counts {
     let (model, (state, workspace)) = (simulation.model(), without_found(simulation).look_ahead());
-    let (size, constants) = (model.covers.mesh.size, model.entrance);
+    let (size, constants) = (model.covers.mesh.size, model.detection);
     let dt = state.rest_of_step(model);
     let rule = VertexRule {
         boundary: &model.boundary,

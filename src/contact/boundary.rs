@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
 use crate::geometry::{Point, TraceId, Vector, id};
 
-use super::EntranceRule;
+use super::DetectionRule;
 use super::constants::BOUNDARY_ROUND_OFF;
 
 id! {
@@ -115,7 +115,7 @@ struct Station {
 
 impl Boundary {
     /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
-    pub fn new(covers: &Covers, outlines: &Outlines, rule: &EntranceRule) -> Self {
+    pub fn new(covers: &Covers, outlines: &Outlines, rule: &DetectionRule) -> Self {
         let mut boundary = Self::default();
         let carrier = covers.carriers();
         for k in 0..outlines.len() {
@@ -288,7 +288,7 @@ fn turn(before: &BoundaryPiece, after: &BoundaryPiece) -> f64 {
 }
 
 /// Pieces of a loop with their turns, corners marked, beginning at a corner.
-fn stations(pieces: &[BoundaryPiece], rule: &EntranceRule) -> Vec<Station> {
+fn stations(pieces: &[BoundaryPiece], rule: &DetectionRule) -> Vec<Station> {
     let n = pieces.len();
     let mut stations: Vec<Station> = (0..n)
         .map(|k| {
@@ -319,7 +319,7 @@ fn stations(pieces: &[BoundaryPiece], rule: &EntranceRule) -> Vec<Station> {
 }
 
 /// Adds nodes so that none are farther apart than `size` (m), on existing points where one is near.
-fn place_nodes(stations: &mut Vec<Station>, size: f64, rule: &EntranceRule) {
+fn place_nodes(stations: &mut Vec<Station>, size: f64, rule: &DetectionRule) {
     let mut placed = Vec::with_capacity(stations.len() + 8);
     let old = std::mem::take(stations);
     let mut spans = old.into_iter().peekable();

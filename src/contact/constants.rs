@@ -6,7 +6,7 @@
 #[doc(alias = "tolerance")]
 #[doc(alias = "slop")]
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EntranceRule {
+pub struct DetectionRule {
     /// Height of a ledge up to which it holds nothing; a ledge of twice the height holds in full.
     pub ledge: f64,
     /// Upper bound of the compression of springs: a greater depth is no compression.
@@ -69,7 +69,7 @@ pub const SQUARES_ROUND_OFF: f64 = 1e-12;
 /// Share of its length that a corner has at the corner of another side. Derived: that corner is a contact as well.
 pub const CORNER_SHARE: f64 = 0.5;
 
-impl Default for EntranceRule {
+impl Default for DetectionRule {
     fn default() -> Self {
         Self {
             ledge: 1e-3,
@@ -100,7 +100,7 @@ impl Default for EntranceRule {
     }
 }
 
-impl EntranceRule {
+impl DetectionRule {
     /// Cosine of the angle up to which faces lie on each other.
     pub fn flush_cosine(&self) -> f64 {
         (1.0 - self.flush_sine * self.flush_sine).sqrt()

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::Point;
 
-use super::{EntranceRule, Frames};
+use super::{DetectionRule, Frames};
 
 /// A contact as it is found: its near side, and how long it is. Node, side and edge are in its history.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -41,7 +41,7 @@ impl FoundContacts {
     }
 
     /// The same, unless all have to be found in the step after as many `steps`.
-    pub fn kept_from(&self, steps: u64, rule: &EntranceRule) -> Option<&[Point]> {
+    pub fn kept_from(&self, steps: u64, rule: &DetectionRule) -> Option<&[Point]> {
         (!self.contacts.is_empty() && (steps.saturating_sub(self.step) as f64) < rule.stays_steps)
             .then_some(&self.found_at)
     }
@@ -66,7 +66,7 @@ impl FoundContacts {
     }
 
     /// Takes over the contacts of the step after as many `steps`, in exchange for those before.
-    pub fn take_over(&mut self, contacts: &mut Vec<FoundContact>, frames: &Frames, steps: u64, rule: &EntranceRule) {
+    pub fn take_over(&mut self, contacts: &mut Vec<FoundContact>, frames: &Frames, steps: u64, rule: &DetectionRule) {
         if self.kept_from(steps, rule).is_none() {
             self.found_at.clear();
             self.found_at.extend(frames.node_positions());

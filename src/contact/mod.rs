@@ -24,11 +24,11 @@ pub use bolt::{BoltCondition, BoltRow, BoltSegment, BoltState, BoltView};
 pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use climb::Slide;
-pub use constants::EntranceRule;
+pub use constants::DetectionRule;
 pub use found::{FoundContact, FoundContacts};
 pub use frame::Frames;
 pub use law::{Bond, Closure, Damaged, JointLaw, LawId, LiftLoad, Lifted, Limits, Roughness, SectionBond, Softening};
-pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, entrance_edges, prefiltered};
+pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, find_contacts, prefiltered};
 pub use pair::Pair;
 pub use section::{Failure, Hold, Release, Section, SectionForces, SectionId, Sections};
 #[doc(hidden)]

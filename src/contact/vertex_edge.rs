@@ -40,7 +40,7 @@ pub struct ContactHistory {
     /// Shear force at the end of the last step (N/m), on the node along the edge.
     pub shear_force: f64,
     /// Normal force that friction feels (N/m): that of the last milliseconds (Eq. 84).
-    pub felt: f64,
+    pub filtered_normal: f64,
     /// Change of both forces in the last step (N/m), 0 of one that turned back in a static stage.
     pub trend: [f64; 2],
     /// Elastic shear of the spring (m), independent of the length of the contact.
@@ -187,7 +187,7 @@ pub struct ContactSetting<'a> {
     /// Shares of tension and of shear beyond the residual one that the bonds of each section may carry.
     pub section_share: &'a [[f64; 2]],
     /// Share of the normal force of this step in that which delayed friction feels.
-    pub felt_share: f64,
+    pub filter_share: f64,
     /// Least length (m) over which rock crushes.
     pub crush_length: f64,
 }
@@ -233,7 +233,7 @@ impl VertexEdge {
         };
         let limits = limits.times(setting.strength);
         let limits = if self.past > 0.0 { limits.under(self.past) } else { limits };
-        if self.delayed { limits.delayed(setting.felt_share, self.history.felt) } else { limits }
+        if self.delayed { limits.delayed(setting.filter_share, self.history.filtered_normal) } else { limits }
     }
 
     /// Its bond, if its joint softens and holds.
@@ -295,14 +295,14 @@ impl VertexEdge {
 
     /// Normal force (N/m) that friction feels after the step.
     #[inline(always)]
-    pub fn felt_after(&self, setting: &ContactSetting) -> f64 {
-        let (normal, before) = (self.history.normal_force, self.history.felt);
+    pub fn filtered_normal(&self, setting: &ContactSetting) -> f64 {
+        let (normal, before) = (self.history.normal_force, self.history.filtered_normal);
         if !self.delayed {
             return normal;
         }
-        let felt = before + (normal - before) * setting.felt_share;
+        let filtered = before + (normal - before) * setting.filter_share;
         // It fades to zero instead of to numbers that computers are slow with.
-        if felt.abs() < f64::MIN_POSITIVE { 0.0 } else { felt }
+        if filtered.abs() < f64::MIN_POSITIVE { 0.0 } else { filtered }
     }
 
     /// The normal spring.

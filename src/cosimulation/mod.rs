@@ -12,7 +12,7 @@ mod threads;
 pub use crate::state::{Event, EventKind, PortKind, Quantity};
 pub use error::CosimulationError;
 pub use interval::{Interval, StepInfo};
-pub use observe::{ContactCounts, PortState, TOTALS, Totals};
+pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
 

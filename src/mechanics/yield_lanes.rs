@@ -59,7 +59,7 @@ impl ElementRow {
 
     /// Means over the patches of each of pairs that all patches have, or its own in no patch.
     #[inline(always)]
-    pub fn felt<V: Values>(&self, values: V, of_patches: &[[f64; 2]], own: [V::F; 2]) -> [V::F; 2] {
+    pub fn averaged<V: Values>(&self, values: V, of_patches: &[[f64; 2]], own: [V::F; 2]) -> [V::F; 2] {
         let PatchPlaces { outside, .. } = self.patches;
         let means = self.patches.means(values, of_patches);
         [values.select(outside, own[0], means[0]), values.select(outside, own[1], means[1])]

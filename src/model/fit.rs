@@ -235,7 +235,7 @@ impl Simulation {
                 meeting: Meeting { age, kept_stiffness },
                 normal_force,
                 shear_force,
-                felt,
+                filtered_normal,
                 trend,
                 sheared,
                 unloaded: Unloaded { offset, rest },
@@ -253,7 +253,7 @@ impl Simulation {
             for (field, value, most) in [
                 ("normal_force", normal_force, FORCE),
                 ("shear_force", shear_force, FORCE),
-                ("felt", felt, FORCE),
+                ("filtered_normal", filtered_normal, FORCE),
                 ("trend[0]", trend[0], FORCE),
                 ("trend[1]", trend[1], FORCE),
                 ("sheared", sheared, LENGTH),

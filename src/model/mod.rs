@@ -20,7 +20,7 @@ pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};
-pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState};
+pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState, MONITOR_QUANTITIES, MonitorState};
 pub use restless::Restless;
 pub use simulation::Simulation;
 

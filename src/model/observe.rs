@@ -55,43 +55,76 @@ pub struct BlockContacts {
     pub penetration_max: f64,
 }
 
-/// Numbers of a block as outputs show them, in the order of the columns of `blocks.csv`. The second name is that of an
-/// array of the FMUs, and empty where they have none.
+/// Numbers of a block as outputs show them: the columns of `blocks.csv` and the structures of C and Python in this
+/// order, the film and the arrays of the FMUs. The second name is that of the array, and empty where they have none.
+/// New ones go to the end.
 pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
-    Quantity::new(["centroid_x", "block_x"], "m", "Centroid now, x", |block| block.centroid.x),
-    Quantity::new(["centroid_y", "block_y"], "m", "Centroid now, y up", |block| block.centroid.y),
-    Quantity::new(["displacement_x", "block_displacement_x"], "m", "Displacement, x", |block| block.displacement.x),
-    Quantity::new(["displacement_y", "block_displacement_y"], "m", "Displacement, y up", |block| block.displacement.y),
-    Quantity::new(["rotation", "block_rotation"], "rad", "Rotation, counter-clockwise", |block| block.rotation),
-    Quantity::new(["velocity_x", "block_velocity_x"], "m/s", "Velocity, x", |block| block.velocity.x),
-    Quantity::new(["velocity_y", "block_velocity_y"], "m/s", "Velocity, y up", |block| block.velocity.y),
+    Quantity::new(["centroid_x", "block_x"], "m", "Mass centroid now, x", |block| block.centroid.x),
+    Quantity::new(["centroid_y", "block_y"], "m", "Mass centroid now, y up", |block| block.centroid.y),
+    Quantity::new(["displacement_x", "block_displacement_x"], "m", "Displacement of the mass centroid, x", |block| {
+        block.displacement.x
+    }),
+    Quantity::new(
+        ["displacement_y", "block_displacement_y"],
+        "m",
+        "Displacement of the mass centroid, y up",
+        |block| block.displacement.y,
+    ),
+    Quantity::new(["rotation", "block_rotation"], "rad", "Rotation, counter-clockwise, within -pi and pi", |block| {
+        block.rotation
+    }),
+    Quantity::new(["velocity_x", "block_velocity_x"], "m/s", "Velocity of the mass centroid, x", |block| {
+        block.velocity.x
+    }),
+    Quantity::new(["velocity_y", "block_velocity_y"], "m/s", "Velocity of the mass centroid, y up", |block| {
+        block.velocity.y
+    }),
     Quantity::new(
         ["angular_velocity", "block_angular_velocity"],
         "rad/s",
         "Angular velocity, counter-clockwise",
         |block| block.angular_velocity,
     ),
-    Quantity::new(["mean_stress_xx", "block_stress_xx"], "Pa", "Mean stress xx, tension positive", |block| {
-        block.mean_stress[0]
+    Quantity::new(
+        ["mean_stress_xx", "block_stress_xx"],
+        "Pa",
+        "Area mean of the stress xx, tension positive",
+        |block| block.mean_stress[0],
+    ),
+    Quantity::new(
+        ["mean_stress_yy", "block_stress_yy"],
+        "Pa",
+        "Area mean of the stress yy, tension positive",
+        |block| block.mean_stress[1],
+    ),
+    Quantity::new(["mean_stress_xy", "block_stress_xy"], "Pa", "Area mean of the stress xy", |block| {
+        block.mean_stress[2]
     }),
-    Quantity::new(["mean_stress_yy", "block_stress_yy"], "Pa", "Mean stress yy, tension positive", |block| {
-        block.mean_stress[1]
-    }),
-    Quantity::new(["mean_stress_xy", "block_stress_xy"], "Pa", "Mean stress xy", |block| block.mean_stress[2]),
     Quantity::new(["area", ""], "m2", "Area in the reference configuration", |block| block.area),
     Quantity::new(["mass", ""], "kg/m", "Mass", |block| block.mass),
     Quantity::new(["kinetic_energy", ""], "J/m", "Kinetic energy", |block| block.kinetic_energy),
     Quantity::new(["strain_energy", ""], "J/m", "Strain energy", |block| block.strain_energy),
     Quantity {
         is_count: true,
-        ..Quantity::new(["contacts", "block_contact_count"], "", "Contacts that carry force", |block| {
+        ..Quantity::new(["contacts", "block_contact_count"], "", "Contacts on the block that carry force", |block| {
             f64::from(block.contacts.count)
         })
     },
-    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration", |block| {
+    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration of its contacts", |block| {
         block.contacts.penetration_max
     }),
     Quantity::new(["speed", ""], "m/s", "Speed of the centroid", |block| block.velocity.norm()),
+];
+
+/// Displacement (m) and velocity (m/s) of a monitor.
+pub type MonitorState = (Vector, Vector);
+
+/// Numbers of a monitor as outputs show them: in `history.csv` by their second names, in the FMUs by their first.
+pub const MONITOR_QUANTITIES: [Quantity<MonitorState>; 4] = [
+    Quantity::new(["displacement_x", "ux"], "m", "Displacement, x", |(u, _)| u.x),
+    Quantity::new(["displacement_y", "uy"], "m", "Displacement, y up", |(u, _)| u.y),
+    Quantity::new(["velocity_x", "vx"], "m/s", "Velocity, x", |(_, v)| v.x),
+    Quantity::new(["velocity_y", "vy"], "m/s", "Velocity, y up", |(_, v)| v.y),
 ];
 
 impl Simulation {
@@ -151,11 +184,11 @@ impl Simulation {
         let covers = &model.covers;
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
-        let felt = model.felt(state, covers.elements_of(block));
+        let patches = model.patch_means(state, covers.elements_of(block));
         for e in ElementId::range(covers.elements_of(block)) {
-            let of_element = model.stress_under(state, e, &felt);
+            let of_element = model.stress_under(state, e, &patches);
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
-            strain_energy += model.strain_energy(state, e, &felt) * covers.element_area[e];
+            strain_energy += model.strain_energy(state, e, &patches) * covers.element_area[e];
         }
         (stress, strain_energy)
     }

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::contact::{EntranceRule, SideId, VertexEdge};
+use crate::contact::{DetectionRule, SideId, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::state::{Drive, Event, EventKind, Ledger, Model, State, Workspace};
@@ -71,8 +71,8 @@ impl Simulation {
 
     /// The same with other constants of contact, for studies of what they do.
     #[must_use]
-    pub fn with_entrance(mut self, rule: EntranceRule) -> Self {
-        self.built.model.entrance = rule;
+    pub fn with_detection(mut self, rule: DetectionRule) -> Self {
+        self.built.model.detection = rule;
         self.built.state.found.forget();
         self.report.take();
         self

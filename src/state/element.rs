@@ -13,10 +13,10 @@ use super::{Model, State};
 /// Height over the mesh size by which a sliver may hang on its host: that of a triangle.
 const HANGING: f64 = 0.866_025_403_784_438_6;
 
-/// Averages over patches that rock of whole blocks feels where it yields, and its yield surfaces. Empty where no rock
+/// Means over the patches of whole blocks whose rock yields, and its yield surfaces. Empty where no rock
 /// yields.
 #[derive(Debug, Clone)]
-pub struct Felt {
+pub struct PatchMeans {
     /// First element.
     first: usize,
     /// Averaged elastic volume change of each (Eq. 58a).
@@ -35,11 +35,11 @@ impl Model {
         Deformation::new(u, &self.covers.gradients[self.covers.element_triangle[element].set as usize])
     }
 
-    /// What the rock of whole blocks, which have the elements of a range, feels of its patches.
-    pub fn felt(&self, state: &State, elements: Range<usize>) -> Felt {
+    /// Means over patches for the rock of whole blocks, which have the elements of a range.
+    pub fn patch_means(&self, state: &State, elements: Range<usize>) -> PatchMeans {
         let first = elements.start;
         if state.plastic.is_empty() {
-            return Felt { first, volume: Vec::new(), mean: Vec::new(), surfaces: Vec::new() };
+            return PatchMeans { first, volume: Vec::new(), mean: Vec::new(), surfaces: Vec::new() };
         }
         let at = |e: ElementId| e.index() - first;
         let own = |e: ElementId| match self.strength_of(e) {
@@ -54,12 +54,12 @@ impl Model {
         let mean = ElementId::range(elements).map(|e| averaged(&own, e)).collect();
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
         let surfaces = self.surfaces(state.drive.strength_factor_now(time)).collect();
-        Felt { first, volume, mean, surfaces }
+        PatchMeans { first, volume, mean, surfaces }
     }
 
     /// The same for the block of one element.
-    fn felt_about(&self, state: &State, element: ElementId) -> Felt {
-        self.felt(state, self.covers.elements_of(self.covers.element_block[element]))
+    fn patch_means_about(&self, state: &State, element: ElementId) -> PatchMeans {
+        self.patch_means(state, self.covers.elements_of(self.covers.element_block[element]))
     }
 
     /// Elastic constants of an element.
@@ -115,13 +115,13 @@ impl Model {
         &self,
         state: &State,
         element: ElementId,
-        felt: &Felt,
+        patches: &PatchMeans,
     ) -> Option<(&YieldingRock, Strained, [PlasticStrain; 2])> {
         let strength = self.strength_of(element)?;
         let before = state.plastic.get(element.index())?;
-        let surface = felt.surfaces[self.element_rock[element] as usize].as_ref()?;
+        let surface = patches.surfaces[self.element_rock[element] as usize].as_ref()?;
         let deformation = self.deformation(element, &state.displacement);
-        let at = Strained { deformation, mean: felt.mean[element.index() - felt.first][0] };
+        let at = Strained { deformation, mean: patches.mean[element.index() - patches.first][0] };
         let trial = surface.trial(&at, Some(&self.pre_stress_and_out(element)), before);
         let growth = self.flow(surface, element, trial).unwrap_or_default();
         Some((strength, at, [*before, growth]))
@@ -129,14 +129,14 @@ impl Model {
 
     /// Stress xx, yy, xy (Pa, tension positive) of an element in global axes.
     pub fn stress(&self, state: &State, element: ElementId) -> [f64; 3] {
-        self.stress_under(state, element, &self.felt_about(state, element))
+        self.stress_under(state, element, &self.patch_means_about(state, element))
     }
 
-    /// The same where it is known what the block of the element feels.
-    pub fn stress_under(&self, state: &State, element: ElementId, felt: &Felt) -> [f64; 3] {
+    /// The same from the means over the patches of its block.
+    pub fn stress_under(&self, state: &State, element: ElementId, patches: &PatchMeans) -> [f64; 3] {
         let at = self.deformation(element, &state.displacement);
         let stress = at.stress(self.rock_of(element), &self.pre_stress_of(element));
-        match self.plastic_now(state, element, felt) {
+        match self.plastic_now(state, element, patches) {
             Some((strength, at, [plastic, growth])) => {
                 let relief = strength.stress(&at, &plastic, &growth);
                 [0, 1, 2].map(|k| stress[k] + relief[k])
@@ -147,22 +147,22 @@ impl Model {
 
     /// Plastic strain √(⅔ εp:εp) of an element at the displacements of a state; zero when it never yields.
     pub fn plastic_strain(&self, state: &State, element: ElementId) -> f64 {
-        self.plastic_strain_under(state, element, &self.felt_about(state, element))
+        self.plastic_strain_under(state, element, &self.patch_means_about(state, element))
     }
 
-    /// The same where it is known what the block of the element feels.
-    pub fn plastic_strain_under(&self, state: &State, element: ElementId, felt: &Felt) -> f64 {
-        let [plastic, growth] = self.plastic_now(state, element, felt).map_or([[0.0; 4]; 2], |(.., both)| both);
+    /// The same from the means over the patches of its block.
+    pub fn plastic_strain_under(&self, state: &State, element: ElementId, patches: &PatchMeans) -> f64 {
+        let [plastic, growth] = self.plastic_now(state, element, patches).map_or([[0.0; 4]; 2], |(.., both)| both);
         equivalent_strain(&[0, 1, 2, 3].map(|k| plastic[k] + growth[k]))
     }
 
     /// Strain energy (J/m² of reference area) of an element with the plastic strain that the state holds.
-    pub fn strain_energy(&self, state: &State, element: ElementId, felt: &Felt) -> f64 {
+    pub fn strain_energy(&self, state: &State, element: ElementId, patches: &PatchMeans) -> f64 {
         let at = self.deformation(element, &state.displacement);
         let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
         match self.strength_of(element).zip(state.plastic.get(element.index())) {
             Some((strength, plastic)) => {
-                let [volume] = felt.volume[element.index() - felt.first];
+                let [volume] = patches.volume[element.index() - patches.first];
                 energy + strength.energy(&at, volume, &self.pre_stress_and_out(element), plastic)
             }
             None => energy,

@@ -100,12 +100,14 @@ impl Ledger {
 /// Energies that the largest term leaves out: sums of others, and those of the start, which no force has moved.
 const COMPOSED: [&str; 5] = ["contact_dissipation", "residual", "baseline", "bolt_installed", "bolt_dissipation"];
 
-/// Energies and works as outputs show them: `history.csv` in this order, `summary.json`, the FMUs, and by their names
-/// the structures of C and Python. New ones go to the end.
+/// Energies and works as outputs show them: `history.csv` in this order, `summary.json`, the FMUs, and the structures
+/// of C and Python. New ones go to the end.
 pub const ENERGIES: [Quantity<Ledger>; 19] = [
-    energy(["kinetic", "kinetic_energy"], "Kinetic energy per metre of depth", |ledger| ledger.kinetic),
-    energy(["strain", "strain_energy"], "Strain energy per metre of depth", |ledger| ledger.strain),
-    energy(["potential", "potential_energy"], "Potential energy of gravity since the start", |ledger| ledger.potential),
+    energy(["kinetic", "kinetic_energy"], "Kinetic energy", |ledger| ledger.kinetic),
+    energy(["strain", "strain_energy"], "Strain energy", |ledger| ledger.strain),
+    energy(["potential", "potential_energy"], "Potential energy of gravity, from the undeformed state on", |ledger| {
+        ledger.potential
+    }),
     energy(["stored", "stored_energy"], "Energy in contact and support springs", |ledger| ledger.stored),
     energy(["friction", "friction_heat"], "Energy turned into heat by slip", |ledger| ledger.friction),
     energy(
@@ -114,13 +116,23 @@ pub const ENERGIES: [Quantity<Ledger>; 19] = [
         |ledger| ledger.contact_dissipation(),
     ),
     energy(["damping", "damping_loss"], "Energy taken by damping", |ledger| ledger.damping),
-    energy(["external_work", "external_work"], "Work of loads and inputs", |ledger| ledger.external_work),
-    energy(["residual", "energy_residual"], "Energy that appeared from nowhere", |ledger| ledger.residual()),
+    energy(
+        ["external_work", "external_work"],
+        "Work of loads and inputs, and of gravity while it grows or changes",
+        |ledger| ledger.external_work,
+    ),
+    energy(
+        ["residual", "energy_residual"],
+        "Energy that appeared from nowhere: the error of the time steps",
+        |ledger| ledger.residual(),
+    ),
     energy(["yielding", "yielding_loss"], "Energy taken by yielding rock", |ledger| ledger.yielding),
     energy(["bolt_work", "bolt_work"], "Work of bolts on the blocks", |ledger| ledger.bolts.work),
-    energy(["radiation", "radiation"], "Work of quiet boundaries: less what waves carry away", |ledger| {
-        ledger.radiation
-    }),
+    energy(
+        ["radiation", "radiation"],
+        "Work of quiet boundaries and free-field columns: less what waves carry away",
+        |ledger| ledger.radiation,
+    ),
     energy(["baseline", "baseline_energy"], "Energy of the start, less what left with excavated blocks", |ledger| {
         ledger.baseline
     }),
@@ -132,9 +144,11 @@ pub const ENERGIES: [Quantity<Ledger>; 19] = [
         "Energy that bolts were installed with by their pretension",
         |ledger| ledger.bolts.installed,
     ),
-    energy(["bolt_dissipation", "bolt_dissipation"], "Energy that bolts lost by yielding and rupture", |ledger| {
-        ledger.bolt_dissipation()
-    }),
+    energy(
+        ["bolt_dissipation", "bolt_dissipation"],
+        "Energy that bolts lost by yielding and rupture: installed less work and stored",
+        |ledger| ledger.bolt_dissipation(),
+    ),
     energy(["fracture", "fracture_energy"], "Energy of fracture of joints that soften", |ledger| ledger.fracture),
 ];
 

@@ -1,7 +1,7 @@
 //! The built model: nothing in it changes in time.
 
 use crate::contact::{
-    BoltSegment, Boundary, ContactSetting, EdgeId, EntranceRule, Frames, JointLaw, LawId, Sections, Support,
+    BoltSegment, Boundary, ContactSetting, DetectionRule, EdgeId, Frames, JointLaw, LawId, Sections, Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
@@ -220,7 +220,7 @@ pub struct Model {
     /// Relative change of force at which the open–close iteration has settled.
     pub tolerance: f64,
     /// Constants of contact.
-    pub entrance: EntranceRule,
+    pub detection: DetectionRule,
     /// Delay of friction in dynamic stages (s), if the case gives it.
     pub friction_delay: Option<f64>,
     /// Most sweeps of the open–close iteration.
@@ -242,9 +242,9 @@ impl Model {
         frames: &'a Frames,
         selection: &'a SelectionBuffers,
     ) -> ContactSetting<'a> {
-        let SelectionBuffers { ref trace_law, ref section_share, strength, felt_share, .. } = *selection;
-        let (boundary, crush_length) = (&self.boundary, self.entrance.crush_floor * self.covers.mesh.size);
-        ContactSetting { boundary, frames, laws, trace_law, section_share, strength, felt_share, crush_length }
+        let SelectionBuffers { ref trace_law, ref section_share, strength, filter_share, .. } = *selection;
+        let (boundary, crush_length) = (&self.boundary, self.detection.crush_floor * self.covers.mesh.size);
+        ContactSetting { boundary, frames, laws, trace_law, section_share, strength, filter_share, crush_length }
     }
 
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not

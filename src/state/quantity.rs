@@ -3,7 +3,8 @@
 /// A number that outputs show of a `T`.
 #[derive(Debug, Clone, Copy)]
 pub struct Quantity<T> {
-    /// Name among its like: a field in C and Python, a key in `summary.json`.
+    /// Name among its like: a field in C and Python, a column of `blocks.csv`, a key in `summary.json`, a number in the
+    /// film.
     pub name: &'static str,
     /// Name among all others: a column of `history.csv`, a variable of an FMU.
     pub column: &'static str,

@@ -112,7 +112,7 @@ pub struct Grown {
     pub element: ElementId,
     /// Growth.
     pub strain: PlasticStrain,
-    /// Mean stress (Pa) that it felt before.
+    /// Mean stress (Pa) before, over its patch.
     pub mean: f64,
 }
 
@@ -136,7 +136,7 @@ pub struct SelectionBuffers {
     /// Shares of tension and of shear beyond the residual one that bonds of each section may carry in this step.
     pub section_share: Vec<[f64; 2]>,
     /// Share of the normal force of this step in that which delayed friction feels.
-    pub felt_share: f64,
+    pub filter_share: f64,
     /// Faces in touch in this step.
     pub faces: FaceBuffers,
     /// Gaps (m) that contacts of small displacements had without any displacement (Eq. 62a); empty until a step finds
@@ -156,9 +156,9 @@ pub struct Face {
     /// Whether it is in touch.
     pub touches: bool,
     /// Whether one of its contacts keeps the stiffness of an impact.
-    pub strikes: bool,
+    pub in_impact: bool,
     /// Normal force (N/m) that friction feels, of all its contacts.
-    pub felt: f64,
+    pub filtered_normal: f64,
     /// Length (m) of those contacts where it feels any.
     pub length: f64,
 }

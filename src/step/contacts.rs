@@ -47,8 +47,8 @@ pub fn search(
     }
     let boundary = &model.boundary;
     let size = model.covers.mesh.size;
-    if state.neighbours.is_stale(frames, model.entrance.skin() * size) {
-        let cutoff = model.entrance.cutoff * size;
+    if state.neighbours.is_stale(frames, model.detection.skin() * size) {
+        let cutoff = model.detection.cutoff * size;
         let view = SearchView { boundary, frames, cutoff, removed: &state.removed, fixed, serial };
         selection.grid.search(&view, &mut state.neighbours);
         if !selection.left_out.is_empty() {
@@ -63,7 +63,7 @@ pub fn search(
 }
 
 /// Contacts within reach.
-pub fn entrance(
+pub fn find_contacts(
     model: &Model,
     state: &State,
     step: &Substep,
@@ -89,15 +89,15 @@ pub fn entrance(
         cache,
         penetrating,
         size: model.covers.mesh.size,
-        constants: model.entrance,
-        flush_cosine: model.entrance.flush_cosine(),
+        constants: model.detection,
+        flush_cosine: model.detection.flush_cosine(),
         reach: reach.gap,
     };
     let has_impacts = matches!(step.regime, Regime::Dynamic { .. }) && reach.ahead > 0.0;
     let narrow = NarrowPhase {
         rule,
         last: &state.found.contacts,
-        found_at: state.found.kept_from(state.step, &model.entrance),
+        found_at: state.found.kept_from(state.step, &model.detection),
         star: &model.covers.star_position,
         displacement: &state.displacement,
         laws: &state.laws,
@@ -113,7 +113,7 @@ pub fn entrance(
         in_situ: model.in_situ.as_ref(),
         serial: step.serial,
     };
-    contact::entrance_edges(&narrow, &state.neighbours.pairs, near_sides, accepted, contacts);
+    contact::find_contacts(&narrow, &state.neighbours.pairs, near_sides, accepted, contacts);
     if let Some(gaps) = &mut selection.kept_gaps {
         gaps.extend(contacts.iter().map(|contact| -contact.penetration() - opened(model, state, contact)));
     }

@@ -30,7 +30,7 @@ pub fn delay_friction(
         state.friction_delay = Some(delay_of(model, mass_matrix, contacts));
     }
     let delay = state.friction_delay;
-    selection.felt_share = delay.map_or(1.0, |delay| step.dt / (delay.time + step.dt));
+    selection.filter_share = delay.map_or(1.0, |delay| step.dt / (delay.time + step.dt));
     if delay.is_none() && state.laws.iter().all(|law| law.roughness.is_none()) {
         return;
     }
@@ -60,9 +60,9 @@ fn find_faces(contacts: &[VertexEdge], delay: Option<FrictionDelay>, FaceBuffers
         let face = &mut faces[*slot as usize];
         face.age = face.age.max(history.meeting.age);
         face.touches |= contact.gap < hop;
-        face.strikes |= !contact.fresh && history.meeting.kept_stiffness > 0.0;
-        face.felt += history.felt;
-        face.length += if history.felt > 0.0 { contact.length } else { 0.0 };
+        face.in_impact |= !contact.fresh && history.meeting.kept_stiffness > 0.0;
+        face.filtered_normal += history.filtered_normal;
+        face.length += if history.filtered_normal > 0.0 { contact.length } else { 0.0 };
     }
 }
 
@@ -75,14 +75,15 @@ fn follow_face(
 ) {
     let face = &faces[of_side[contact.history.side] as usize];
     if !face.touches {
-        (contact.history.meeting.age, contact.history.felt, contact.history.meeting.kept_stiffness) = (0.0, 0.0, 0.0);
+        (contact.history.meeting.age, contact.history.filtered_normal, contact.history.meeting.kept_stiffness) =
+            (0.0, 0.0, 0.0);
         return;
     }
     if is_rough {
-        contact.past = if face.length > 0.0 { face.felt / face.length } else { 0.0 };
+        contact.past = if face.length > 0.0 { face.filtered_normal / face.length } else { 0.0 };
     }
     let is_old = |time: f64| time > 0.0 && f64::from(face.age) >= YOUNG * time;
-    contact.delayed = !face.strikes && delay.is_some_and(|delay| is_old(delay.time));
+    contact.delayed = !face.in_impact && delay.is_some_and(|delay| is_old(delay.time));
     contact.history.meeting.age = face.age + dt as f32;
 }
 
@@ -93,7 +94,7 @@ pub fn delay_of(model: &Model, mass_matrix: &MassMatrix, contacts: &[VertexEdge]
     let force: f64 = contacts.iter().map(pressed).sum();
     let closures: f64 = contacts.iter().map(|contact| pressed(contact) * (-contact.gap).max(0.0)).sum();
     let closure = if force > 0.0 { closures / force } else { 0.0 };
-    let hop = ASPERITY.max(HOPS * closure).min(model.entrance.reach * model.covers.mesh.size);
+    let hop = ASPERITY.max(HOPS * closure).min(model.detection.reach * model.covers.mesh.size);
     let touching = contacts.iter().filter(|contact| contact.gap < hop).map(|contact| contact.blocks(&model.boundary));
     let time = model.friction_delay.unwrap_or_else(|| wave_time(model, mass_matrix, touching).min(DELAY_MAX));
     FrictionDelay { time, hop }

@@ -17,7 +17,7 @@ mod settle;
 mod substep;
 
 pub use applied::{acceleration, push_forces};
-pub use contacts::{Reach, entrance, locate, search};
+pub use contacts::{Reach, find_contacts, locate, search};
 pub use friction::{delay_friction, delay_of};
 pub use guard::{Failure, StepError};
 pub use integrator::{Integrator, StepOutcome};

@@ -97,8 +97,8 @@ pub(super) fn kinetic_of_most(model: &Model, mass_matrix: &MassMatrix, state: &S
 /// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
 pub fn strain(model: &Model, state: &State) -> f64 {
     let covers = &model.covers;
-    let felt = model.felt(state, 0..covers.element_count());
-    let of_element = |e: ElementId| covers.element_area[e] * model.strain_energy(state, e, &felt);
+    let patches = model.patch_means(state, 0..covers.element_count());
+    let of_element = |e: ElementId| covers.element_area[e] * model.strain_energy(state, e, &patches);
     covers.elements().filter(|&e| !state.removed[covers.element_block[e]]).map(of_element).sum()
 }
 

@@ -56,7 +56,7 @@ impl Kernel for Settle<'_> {
             add_crush(outcome, &crushed);
             (history.way, history.unloaded.rest) = (lifted.way, history.unloaded.rest + lifted.raised - crushed.closes);
             history.unloaded.offset *= fade;
-            history.felt = contact.felt_after(&setting);
+            history.filtered_normal = contact.filtered_normal(&setting);
             if rests {
                 history.meeting.age = f32::INFINITY;
             }

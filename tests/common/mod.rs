@@ -15,7 +15,7 @@ pub mod random;
 
 use std::path::Path;
 
-use enmm::model::tables::EntranceRule;
+use enmm::model::tables::DetectionRule;
 use enmm::model::{Simulation, StepReport};
 
 /// Root of the repository, from the tests of any crate.
@@ -46,8 +46,8 @@ pub fn run_all(simulation: &mut Simulation) -> Vec<StepReport> {
 
 /// Constants of contact with one of them halved or doubled, and which. Those of the boundary are not among them: a
 /// model is built with them, and `contact_boundary.rs` varies them.
-pub fn varied_rules() -> Vec<(String, EntranceRule)> {
-    type Constant = fn(&mut EntranceRule) -> &mut f64;
+pub fn varied_rules() -> Vec<(String, DetectionRule)> {
+    type Constant = fn(&mut DetectionRule) -> &mut f64;
     let constants: [(&str, Constant); 20] = [
         ("ledge", |rule| &mut rule.ledge),
         ("closure_most", |rule| &mut rule.closure_most),
@@ -72,7 +72,7 @@ pub fn varied_rules() -> Vec<(String, EntranceRule)> {
     ];
     let vary = |(name, constant): (&str, Constant)| {
         [0.5, 2.0].map(|factor| {
-            let mut rule = EntranceRule::default();
+            let mut rule = DetectionRule::default();
             *constant(&mut rule) *= factor;
             (format!("{factor} {name}"), rule)
         })

@@ -9,7 +9,7 @@ use enmm::internals::mechanics::MassMatrix;
 use enmm::internals::state::{Buffers, Model, State, Workspace};
 use enmm::internals::step::{
     Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Window, acceleration, base_motion,
-    delay_friction, entrance, load_supports, locate, push_forces, ramp, search,
+    delay_friction, find_contacts, load_supports, locate, push_forces, ramp, search,
 };
 
 use super::buffers::ImplicitBuffers;
@@ -206,10 +206,10 @@ impl ImplicitStep<'_> {
             self.buffers.matrix.clear();
         }
         motion.speed_max = state.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let (rule, size) = (&model.entrance, model.covers.mesh.size);
+        let (rule, size) = (&model.detection, model.covers.mesh.size);
         let gap = rule.reach * size + REACH_STEPS * dt * motion.speed_max;
         let reach = Reach { gap: gap.min(rule.cutoff * size), ahead: 0.0 };
-        entrance(model, state, &step, reach, frames, selection, contacts);
+        find_contacts(model, state, &step, reach, frames, selection, contacts);
         delay_friction(model, state, &step, mass_matrix, selection, contacts);
         seconds.search += (searched - located).as_secs_f64();
         seconds.entrance += (clock.elapsed() - searched + located).as_secs_f64();

@@ -14,9 +14,11 @@
 //! | energies and works | [`Ledger`] | [`ENERGIES`] |
 //! | sums at the end of a step | [`StepReport`] | [`REPORT_QUANTITIES`] |
 //! | sums for hosts | [`Totals`] | [`TOTALS`] |
+//! | ports | [`PortState`] | [`PORT_QUANTITIES`] |
+//! | monitors | [`MonitorState`] | [`MONITOR_QUANTITIES`] |
 //!
-//! Blocks, energies and sums for hosts are worked out by the engine, because the C library and the FMUs read them
-//! between two steps.
+//! Blocks, energies, ports, monitors and sums for hosts are worked out by the engine, because the C library and the
+//! FMUs read them between two steps.
 #![forbid(unsafe_code)]
 
 mod bolts;
@@ -30,9 +32,10 @@ mod supports;
 mod totals;
 mod water;
 
-pub use enmm::cosimulation::{TOTALS, Totals};
+pub use enmm::cosimulation::{PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use enmm::model::{
-    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, Ledger, Quantity, StepReport,
+    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, Ledger, MONITOR_QUANTITIES, MonitorState,
+    Quantity, StepReport,
 };
 
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};

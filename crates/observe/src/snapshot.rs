@@ -96,7 +96,7 @@ impl Snapshot {
             ..Self::default()
         };
         snapshot.elements.start.push(0);
-        let felt = model.felt(state, 0..covers.element_count());
+        let patches = model.patch_means(state, 0..covers.element_count());
         for e in elements_there(simulation) {
             for &p in covers.polygon(e) {
                 let displacement = model.sample(e, p, &state.displacement);
@@ -105,11 +105,11 @@ impl Snapshot {
                 snapshot.velocity.push(model.sample(e, p, &state.velocity));
             }
             snapshot.elements.start.push(snapshot.elements.points.len() as u32);
-            let stress = model.stress_under(state, e, &felt);
+            let stress = model.stress_under(state, e, &patches);
             snapshot.stress.push(stress);
             snapshot.stress_zz.push(stress_out_of_plane(simulation, e, stress));
             if !state.plastic.is_empty() {
-                snapshot.plastic_strain.push(model.plastic_strain_under(state, e, &felt));
+                snapshot.plastic_strain.push(model.plastic_strain_under(state, e, &patches));
             }
             snapshot.block.push(covers.element_block[e].number());
             snapshot.rock.push(u32::from(model.element_rock[e]));

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use enmm_report::{Axis, FILM, Fact, MOTION, Marked, Note, Trial as Row, TrialTable};
 
-use crate::film::{Film, NUMBERS, Opening};
+use crate::film::{Film, Opening, numbers};
 use crate::found::{Found, remedy};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
@@ -28,7 +28,7 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
     let simulation = &main.simulation;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "fos", film: path.clone(), axis, numbers: NUMBERS, columns: &[] };
+    let opening = Opening { command: "fos", film: path.clone(), axis, numbers: numbers(), columns: &[] };
     let mut film = Film::open(directory, loaded, simulation, opening, None)?;
     film.rigid_frame(simulation, 0.0, |_| (Vector::zeros(), 0.0))?;
     film.frame_at(simulation, 1.0)?;
@@ -58,7 +58,7 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: &MOTION, columns: &[] };
+    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: MOTION.to_vec(), columns: &[] };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     let moving = &bound.level_tops.mechanism;
     let reach = SHOWN * greater_side(&simulation);
@@ -94,7 +94,7 @@ pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Brack
     let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: &MOTION, columns: &[] };
+    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: MOTION.to_vec(), columns: &[] };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     film.frame_at(&simulation, 0.0)?;
     let reach = SHOWN * greater_side(&simulation);

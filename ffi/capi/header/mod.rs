@@ -1,6 +1,11 @@
-//! The C header of the C ABI and its layouts for Python, made of its sources. `cargo xtask header` writes both.
+//! The C header of the C ABI, its layouts for Python and the page of its numbers, made of its sources and the tables of
+//! quantities. `cargo xtask header` writes them.
 
+#[path = "../src/layout.rs"]
+mod layout;
+mod page;
 mod python;
+mod structures;
 
 use std::path::{Path, PathBuf};
 
@@ -47,21 +52,19 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Header and layouts for Python that belong to the sources, with their paths.
+/// Header, modules of Python and page that belong to the sources, with their paths.
 ///
 /// # Errors
 /// When the sources cannot be read, or have a type that Python has no name for.
-pub fn files() -> Result<[(&'static str, String); 2], String> {
-    let header = generate()?;
-    let module = python::module(&header)?;
-    Ok([(HEADER, header), (python::MODULE, module)])
+pub fn files() -> Result<[(&'static str, String); 4], String> {
+    let plain = plain()?;
+    let [layouts, values] = python::modules(&plain)?;
+    let header = structures::with_older_names(&plain);
+    Ok([(HEADER, header), (python::LAYOUTS, layouts), (python::VALUES, values), (page::PAGE, page::page())])
 }
 
-/// The header that belongs to the sources.
-///
-/// # Errors
-/// When the sources cannot be read.
-pub fn generate() -> Result<String, String> {
+/// The header without older names of members.
+fn plain() -> Result<String, String> {
     let config = Config {
         language: Language::C,
         cpp_compat: true,
@@ -80,9 +83,12 @@ pub fn generate() -> Result<String, String> {
     for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/observe", "abi/state"] {
         builder = builder.with_src(sources.join(file).with_extension("rs"));
     }
-    let bindings = builder.generate().map_err(|error| error.to_string())?;
+    let own = std::env::temp_dir().join(format!("enmm-structures-{}.rs", std::process::id()));
+    std::fs::write(&own, structures::source()).map_err(|error| format!("{}: {error}", own.display()))?;
+    let bindings = builder.with_src(&own).generate().map_err(|error| error.to_string());
+    std::fs::remove_file(&own).map_err(|error| format!("{}: {error}", own.display()))?;
     let mut bytes = Vec::new();
-    bindings.write(&mut bytes);
+    bindings?.write(&mut bytes);
     let text = String::from_utf8(bytes).map_err(|error| error.to_string())?;
     let text: String = text.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
     Ok(text.replace(SAFETY, ""))

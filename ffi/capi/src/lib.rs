@@ -10,6 +10,11 @@
 // C sees the names of this crate as they are.
 #![allow(non_camel_case_types)]
 
+#[macro_use]
+pub mod growing;
+
 pub mod abi;
+pub mod layout;
+pub mod numbers;
 pub mod safe;
 pub mod types;

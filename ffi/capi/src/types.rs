@@ -147,145 +147,12 @@ pub struct enmm_step_info {
     pub dt: f64,
     /// Events of this step.
     pub event_count: usize,
-    /// Index of the first of them for enmm_get_events.
+    /// Index of the first of them (enmm_get_events takes it).
     pub first_event: usize,
     /// Internal steps that were redone in halves.
     pub halved: u64,
     /// Sub-steps whose contact forces did not settle; 0 in a sound run.
     pub unsettled: u64,
-}
-
-/// A block now. Velocities are those of half an internal step ago, as the method has them.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct enmm_block_state {
-    /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
-    pub struct_size: usize,
-    /// Block id: 0, 1, ...
-    pub id: u32,
-    /// Sum of ENMM_BLOCK_FIXED, ENMM_BLOCK_DETACHED, ENMM_BLOCK_FAILED, ENMM_BLOCK_REMOVED.
-    pub flags: u32,
-    /// Mass centroid now, x (m).
-    pub centroid_x: f64,
-    /// Mass centroid now, y (m, upwards).
-    pub centroid_y: f64,
-    /// Displacement of the mass centroid, x (m).
-    pub displacement_x: f64,
-    /// Displacement of the mass centroid, y (m).
-    pub displacement_y: f64,
-    /// Rotation (rad, counter-clockwise, within -pi and pi).
-    pub rotation: f64,
-    /// Velocity of the mass centroid, x (m/s).
-    pub velocity_x: f64,
-    /// Velocity of the mass centroid, y (m/s).
-    pub velocity_y: f64,
-    /// Angular velocity (rad/s, counter-clockwise).
-    pub angular_velocity: f64,
-    /// Area mean of the stress, xx (Pa, tension positive).
-    pub mean_stress_xx: f64,
-    /// Area mean of the stress, yy (Pa, tension positive).
-    pub mean_stress_yy: f64,
-    /// Area mean of the stress, xy (Pa).
-    pub mean_stress_xy: f64,
-    /// Area before any deformation (m2).
-    pub area: f64,
-    /// Mass (kg per metre of thickness).
-    pub mass: f64,
-    /// Kinetic energy (J/m).
-    pub kinetic_energy: f64,
-    /// Strain energy (J/m).
-    pub strain_energy: f64,
-    /// Contacts on the block that carry force.
-    pub contact_count: u32,
-    /// 0.
-    pub reserved: u32,
-    /// Largest penetration of its contacts (m).
-    pub largest_penetration: f64,
-}
-
-/// Energies now and works since the start (J per metre of thickness). kinetic + strain + potential + damping + yielding
-/// equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct enmm_energies {
-    /// Size of this structure (bytes), set by the caller.
-    pub struct_size: usize,
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Strain energy.
-    pub strain: f64,
-    /// Potential energy of gravity, from the undeformed state on.
-    pub potential: f64,
-    /// Energy in the springs of contacts and supports.
-    pub stored: f64,
-    /// Energy that slip turned into heat.
-    pub friction: f64,
-    /// Work of contact forces on the blocks.
-    pub contact_work: f64,
-    /// Work of supports on the blocks.
-    pub support_work: f64,
-    /// Energy that damping took.
-    pub damping: f64,
-    /// Work of loads and inputs, and of gravity while it grows or changes.
-    pub external_work: f64,
-    /// Energy of the start, less what left with excavated blocks.
-    pub baseline: f64,
-    /// Energy that contacts lost in other ways than slip.
-    pub contact_dissipation: f64,
-    /// Energy that appeared from nowhere: the error of the time steps.
-    pub residual: f64,
-    /// Energy that yielding rock took.
-    pub yielding: f64,
-    /// Work of bolts on the blocks.
-    pub bolt_work: f64,
-    /// Work of quiet boundaries and free-field columns: less what waves carry away.
-    pub radiation: f64,
-    /// Energy in bolts.
-    pub bolt_stored: f64,
-    /// Energy that bolts were installed with by their pretension.
-    pub bolt_installed: f64,
-    /// Energy that bolts lost by yielding and rupture: bolt_installed - bolt_work - bolt_stored.
-    pub bolt_dissipation: f64,
-    /// Energy of fracture of joints that soften.
-    pub fracture: f64,
-}
-
-/// Sums and extremes over the model.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct enmm_totals {
-    /// Size of this structure (bytes), set by the caller.
-    pub struct_size: usize,
-    /// Largest displacement (m).
-    pub displacement_max: f64,
-    /// Largest velocity (m/s).
-    pub velocity_max: f64,
-    /// Largest penetration of the whole run (m).
-    pub penetration_max: f64,
-    /// Net over applied force; near 0 at rest. Where nothing is applied it is 1, or 0 when all is balanced.
-    pub unbalanced: f64,
-    /// Critical internal step (s).
-    pub critical_dt: f64,
-    /// Contacts without force.
-    pub open_contacts: u32,
-    /// Contacts at their shear limit.
-    pub slipping_contacts: u32,
-    /// Contacts below their shear limit.
-    pub locked_contacts: u32,
-    /// Blocks that have lost their last contact at least once.
-    pub detached_blocks: u32,
-    /// Joints that have slipped.
-    pub slipped_joints: u32,
-    /// Blocks that have failed.
-    pub failed_blocks: u32,
-    /// Greatest depth of overlaps of blocks so far (m), see ENMM_EVENT_OVERLAPPED; 0 for none.
-    pub overlap_max: f64,
-    /// Pairs of blocks that have overlapped.
-    pub overlapping_pairs: u64,
-    /// Bonded length that has broken, of rock bridges and joints with an energy of fracture (m).
-    pub broken_length: f64,
-    /// Joints whose last bond has broken.
-    pub broken_joints: u64,
 }
 
 /// A contact between a boundary node of one block and an edge of another.
@@ -338,94 +205,9 @@ pub struct enmm_event {
     pub depth: f64,
 }
 
-/// A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
-/// last three. What is not filled is 0.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct enmm_port_state {
-    /// Size of this structure (bytes), set by the caller.
-    pub struct_size: usize,
-    /// Displacement of the mass centroid, or mean along the boundary, x (m).
-    pub displacement_x: f64,
-    /// The same, y (m).
-    pub displacement_y: f64,
-    /// Velocity of the mass centroid, or mean along the boundary, x (m/s).
-    pub velocity_x: f64,
-    /// The same, y (m/s).
-    pub velocity_y: f64,
-    /// Rotation of the block (rad, counter-clockwise).
-    pub rotation: f64,
-    /// Angular velocity of the block (rad/s, counter-clockwise).
-    pub angular_velocity: f64,
-    /// Sum of the contact forces on the block, x (N/m).
-    pub contact_force_x: f64,
-    /// The same, y (N/m).
-    pub contact_force_y: f64,
-    /// Mean stress in the block, or in the blocks along the boundary, xx (Pa, tension positive).
-    pub stress_xx: f64,
-    /// The same, yy (Pa, tension positive).
-    pub stress_yy: f64,
-    /// The same, xy (Pa).
-    pub stress_xy: f64,
-    /// Sum of the normal forces across the joints (N/m, compression positive).
-    pub normal_force: f64,
-    /// Sum of the magnitudes of the shear forces along the joints (N/m).
-    pub shear_force: f64,
-    /// Largest slip that a contact of the joints has summed up (m).
-    pub slip: f64,
-}
-
-/// A structure that begins with its size, and may grow at its end.
-///
-/// # Safety
-/// The type must be `repr(C)`, without padding, and its first field `struct_size: usize`; `FIRST_SIZE` is its size in
-/// version 1 of the interface.
-pub unsafe trait Growing: Copy {
-    /// Size in version 1 of the interface (bytes).
-    const FIRST_SIZE: usize;
-    /// Name in messages.
-    const NAME: &str;
-}
-
-const fn size_of_field<T, F>(_: fn(&T) -> &F) -> usize {
-    size_of::<F>()
-}
-
-/// Takes each type with its size in version 1 and its fields.
-macro_rules! sized {
-    ($($type:ident $size:literal { $($field:ident)* })*) => { $(
-        // SAFETY: `repr(C)`, and a size equal to the sum of its fields, as asserted below, leaves no room for padding.
-        unsafe impl Growing for $type {
-            const FIRST_SIZE: usize = $size;
-            const NAME: &str = stringify!($type);
-        }
-        const _: () = {
-            // Does not compile when a field is not listed.
-            let _: fn(&$type) = |all| { let $type { $($field: _),* } = all; };
-            assert!(size_of::<$type>() == 0 $(+ size_of_field(|all: &$type| &all.$field))*);
-            assert!(size_of::<$type>() >= $size);
-        };
-    )* };
-}
-
 sized! {
     enmm_step_info 64 {
         struct_size time steps dt event_count first_event halved unsettled
-    }
-    enmm_block_state 152 {
-        struct_size id flags centroid_x centroid_y displacement_x displacement_y rotation velocity_x velocity_y
-        angular_velocity mean_stress_xx mean_stress_yy mean_stress_xy area mass kinetic_energy strain_energy
-        contact_count reserved largest_penetration
-    }
-    enmm_energies 128 {
-        struct_size kinetic strain potential stored friction contact_work support_work damping external_work baseline
-        contact_dissipation residual yielding bolt_work radiation bolt_stored bolt_installed bolt_dissipation
-        fracture
-    }
-    enmm_totals 72 {
-        struct_size displacement_max velocity_max penetration_max unbalanced critical_dt open_contacts
-        slipping_contacts locked_contacts detached_blocks slipped_joints failed_blocks
-        overlap_max overlapping_pairs broken_length broken_joints
     }
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress
@@ -433,9 +215,5 @@ sized! {
     }
     enmm_event 24 {
         struct_size kind subject time other reserved depth
-    }
-    enmm_port_state 120 {
-        struct_size displacement_x displacement_y velocity_x velocity_y rotation angular_velocity contact_force_x
-        contact_force_y stress_xx stress_yy stress_xy normal_force shear_force slip
     }
 }

@@ -1,6 +1,6 @@
 //! The header and the layouts for Python that are committed are those of the sources.
 
-use crate::generator::{files, generate, root};
+use crate::generator::{HEADER, files, root};
 
 #[test]
 fn the_header_and_the_layouts_for_python_are_those_of_the_sources() {
@@ -13,7 +13,7 @@ fn the_header_and_the_layouts_for_python_are_those_of_the_sources() {
 
 #[test]
 fn every_entry_point_is_documented() {
-    let header = generate().expect("sources that can be read");
+    let header = std::fs::read_to_string(root().join(HEADER)).expect("the header");
     let lines: Vec<&str> = header.lines().collect();
     let declares = |line: &str| {
         let first = line.split('(').next().unwrap_or_default();

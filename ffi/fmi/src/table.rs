@@ -1,9 +1,9 @@
 //! The one table of variables: both model descriptions, every getter and every setter follow it.
 
 use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
-use enmm::cosimulation::{Parameter, PortKind, TOTALS, parameters};
+use enmm::cosimulation::{PORT_QUANTITIES, Parameter, PortKind, TOTALS, parameters};
 use enmm::model::case::Port;
-use enmm::model::{BLOCK_QUANTITIES, Case, ENERGIES};
+use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, MONITOR_QUANTITIES};
 use uuid::Uuid;
 
 /// Version of the standard.
@@ -48,40 +48,6 @@ pub enum Axis {
     X,
     /// Vertical, up.
     Y,
-}
-
-/// Component of a symmetric tensor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Component {
-    /// xx.
-    Xx,
-    /// yy.
-    Yy,
-    /// xy.
-    Xy,
-}
-
-/// Output of a port; some are outputs of monitors too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
-    /// Displacement (m).
-    Displacement(Axis),
-    /// Velocity (m/s).
-    Velocity(Axis),
-    /// Rotation (rad).
-    Rotation,
-    /// Angular velocity (rad/s).
-    AngularVelocity,
-    /// Sum of the contact forces (N/m).
-    ContactForce(Axis),
-    /// Mean stress (Pa).
-    Stress(Component),
-    /// Normal force across joints (N/m).
-    NormalForce,
-    /// Shear force along joints (N/m).
-    ShearForce,
-    /// Largest slip (m).
-    Slip,
 }
 
 /// An output of the whole model.
@@ -136,10 +102,10 @@ pub enum Quantity {
     BlockForce(Axis),
     /// Moments on all blocks (N·m/m).
     BlockMoment,
-    /// Output of a port.
-    Port(usize, Motion),
-    /// Displacement or velocity of a monitor.
-    Monitor(usize, Motion),
+    /// Output of a port: its place in [`PORT_QUANTITIES`].
+    Port(usize, usize),
+    /// Output of a monitor: its place in [`MONITOR_QUANTITIES`].
+    Monitor(usize, usize),
     /// Output of the whole model.
     Total(Total),
     /// Output of all blocks: its place in [`BLOCK_QUANTITIES`].
@@ -177,6 +143,8 @@ pub struct Variable {
     pub length: Option<usize>,
     /// Name of the port that it belongs to.
     pub port: Option<String>,
+    /// Second name, which other interfaces have; FMI 2 has no place for it.
+    pub alias: Option<String>,
     /// Its meaning.
     pub quantity: Quantity,
 }
@@ -246,26 +214,35 @@ impl Table {
 
     /// The quantity whose value is the time derivative of another, for FMI output derivatives.
     pub fn derivative(quantity: Quantity) -> Option<Quantity> {
-        let of_motion = |motion| match motion {
-            Motion::Displacement(axis) => Some(Motion::Velocity(axis)),
-            Motion::Rotation => Some(Motion::AngularVelocity),
-            _ => None,
-        };
         match quantity {
-            Quantity::Port(port, motion) => of_motion(motion).map(|motion| Quantity::Port(port, motion)),
-            Quantity::Monitor(k, motion) => of_motion(motion).map(|motion| Quantity::Monitor(k, motion)),
+            Quantity::Port(port, place) => {
+                place_of(&PORT_QUANTITIES, rate_of(PORT_QUANTITIES[place].name)?).map(|rate| Quantity::Port(port, rate))
+            }
+            Quantity::Monitor(k, place) => {
+                let rate = rate_of(MONITOR_QUANTITIES[place].name)?;
+                place_of(&MONITOR_QUANTITIES, rate).map(|rate| Quantity::Monitor(k, rate))
+            }
             Quantity::Blocks(place) => {
-                let rate = match BLOCK_QUANTITIES[place].column {
-                    "block_displacement_x" => "block_velocity_x",
-                    "block_displacement_y" => "block_velocity_y",
-                    "block_rotation" => "block_angular_velocity",
-                    _ => return None,
-                };
-                place_of_block_output(rate).map(Quantity::Blocks)
+                place_of(&BLOCK_QUANTITIES, rate_of(BLOCK_QUANTITIES[place].name)?).map(Quantity::Blocks)
             }
             _ => None,
         }
     }
+}
+
+/// Name of the time derivative of a motion.
+fn rate_of(name: &str) -> Option<&'static str> {
+    match name {
+        "displacement_x" => Some("velocity_x"),
+        "displacement_y" => Some("velocity_y"),
+        "rotation" => Some("angular_velocity"),
+        _ => None,
+    }
+}
+
+/// Place of a quantity in a table of the engine.
+fn place_of<T>(table: &[Row<T>], name: &str) -> Option<usize> {
+    table.iter().position(|quantity| quantity.name == name)
 }
 
 /// UUID version 5 of the interface and the case behind it.
@@ -336,6 +313,7 @@ impl Rows {
             limits: None,
             length: None,
             port: None,
+            alias: None,
             quantity,
         });
     }
@@ -454,18 +432,19 @@ impl Rows {
 
     fn outputs(&mut self, case: &Case, version: Version) {
         for (k, port) in case.ports.iter().enumerate() {
-            let motions = port_motions(port_kind(port));
-            for &(motion, word, what, unit) in motions {
-                let name = format!("{}.{word}", port.name);
-                let what = format!("{what}, port {}", port.name);
-                self.output(&name, &what, unit, Quantity::Port(k, motion)).port = Some(port.name.clone());
+            for place in port_outputs(port_kind(port)).iter().filter_map(|name| place_of(&PORT_QUANTITIES, name)) {
+                let quantity = &PORT_QUANTITIES[place];
+                let name = format!("{}.{}", port.name, quantity.name);
+                let what = format!("{}, port {}", quantity.text, port.name);
+                let row = self.output(&name, &what, quantity.unit, Quantity::Port(k, place));
+                row.port = Some(port.name.clone());
             }
         }
         for (k, monitor) in case.monitors.iter().enumerate() {
-            for &(motion, word, what, unit) in &PORT_MOTIONS[..4] {
-                let name = format!("monitor.{}.{word}", monitor.name);
-                let what = format!("{what}, monitor {}", monitor.name);
-                self.output(&name, &what, unit, Quantity::Monitor(k, motion));
+            for (place, quantity) in MONITOR_QUANTITIES.iter().enumerate() {
+                let name = format!("monitor.{}.{}", monitor.name, quantity.name);
+                let what = format!("{}, monitor {}", quantity.text, monitor.name);
+                self.output(&name, &what, quantity.unit, Quantity::Monitor(k, place));
             }
         }
         let (first, later) = totals();
@@ -482,11 +461,15 @@ impl Rows {
 
     fn block_outputs(&mut self) {
         let blocks = self.blocks;
-        for place in BLOCK_OUTPUTS.into_iter().filter_map(place_of_block_output) {
-            let quantity = &BLOCK_QUANTITIES[place];
+        let first = |quantity: &&Row<BlockState>| FIRST_BLOCK_OUTPUTS.iter().position(|name| *name == quantity.column);
+        let mut shown: Vec<&Row<BlockState>> = BLOCK_QUANTITIES.iter().filter(|q| !q.column.is_empty()).collect();
+        shown.sort_by_key(|quantity| first(quantity).unwrap_or(FIRST_BLOCK_OUTPUTS.len()));
+        for quantity in shown {
+            let Some(place) = place_of(&BLOCK_QUANTITIES, quantity.name) else { continue };
             let what = format!("{}, every block", quantity.text);
             let row = self.output(quantity.column, &what, quantity.unit, Quantity::Blocks(place));
             row.length = Some(blocks);
+            row.alias = Some(format!("block_{}", quantity.name)).filter(|alias| *alias != row.name);
             if quantity.is_count {
                 row.kind = Type::Integer;
             }
@@ -498,32 +481,35 @@ impl Rows {
 
 const AXES: [(Axis, &str); 2] = [(Axis::X, "x"), (Axis::Y, "y")];
 
-type Row = (Motion, &'static str, &'static str, &'static str);
+/// A row of a table of the engine.
+type Row<T> = enmm::model::Quantity<T>;
 
-/// Outputs of a block port; the first four also of monitors.
-const PORT_MOTIONS: [Row; 11] = [
-    (Motion::Displacement(Axis::X), "displacement_x", "Displacement, x", "m"),
-    (Motion::Displacement(Axis::Y), "displacement_y", "Displacement, y up", "m"),
-    (Motion::Velocity(Axis::X), "velocity_x", "Velocity, x", "m/s"),
-    (Motion::Velocity(Axis::Y), "velocity_y", "Velocity, y up", "m/s"),
-    (Motion::Stress(Component::Xx), "stress_xx", "Mean stress xx, tension positive", "Pa"),
-    (Motion::Stress(Component::Yy), "stress_yy", "Mean stress yy, tension positive", "Pa"),
-    (Motion::Stress(Component::Xy), "stress_xy", "Mean stress xy", "Pa"),
-    (Motion::Rotation, "rotation", "Rotation, counter-clockwise", "rad"),
-    (Motion::AngularVelocity, "angular_velocity", "Angular velocity, counter-clockwise", "rad/s"),
-    (Motion::ContactForce(Axis::X), "contact_force_x", "Sum of the contact forces on the block per metre, x", "N/m"),
-    (Motion::ContactForce(Axis::Y), "contact_force_y", "Sum of the contact forces on the block per metre, y", "N/m"),
+/// Outputs of a block port, those of a boundary port first, in the order of their value references.
+const PORT_OUTPUTS: [&str; 11] = [
+    "displacement_x",
+    "displacement_y",
+    "velocity_x",
+    "velocity_y",
+    "stress_xx",
+    "stress_yy",
+    "stress_xy",
+    "rotation",
+    "angular_velocity",
+    "contact_force_x",
+    "contact_force_y",
 ];
 
-const JOINT_MOTIONS: [Row; 3] = [
-    (Motion::NormalForce, "normal_force", "Sum of the normal forces across the joints, compression positive", "N/m"),
-    (Motion::ShearForce, "shear_force", "Sum of the magnitudes of the shear forces along the joints", "N/m"),
-    (Motion::Slip, "slip", "Largest accumulated slip along the joints", "m"),
-];
+/// Outputs of a port of a kind.
+fn port_outputs(kind: PortKind) -> &'static [&'static str] {
+    match kind {
+        PortKind::Block => &PORT_OUTPUTS,
+        PortKind::Boundary => &PORT_OUTPUTS[..7],
+        PortKind::Joint => &["normal_force", "shear_force", "slip"],
+    }
+}
 
-/// Outputs of all blocks, by their names in the table of the engine. Their order has always been this one, and value
-/// references follow it.
-const BLOCK_OUTPUTS: [&str; 13] = [
+/// Outputs of all blocks that keep the value references they have always had; all others follow.
+const FIRST_BLOCK_OUTPUTS: [&str; 13] = [
     "block_x",
     "block_y",
     "block_displacement_x",
@@ -538,20 +524,6 @@ const BLOCK_OUTPUTS: [&str; 13] = [
     "block_penetration",
     "block_contact_count",
 ];
-
-/// Place of a number of blocks in the table of the engine, by the name of its variable.
-fn place_of_block_output(name: &str) -> Option<usize> {
-    BLOCK_QUANTITIES.iter().position(|quantity| quantity.column == name)
-}
-
-/// Outputs of a port of a kind.
-fn port_motions(kind: PortKind) -> &'static [Row] {
-    match kind {
-        PortKind::Block => &PORT_MOTIONS,
-        PortKind::Boundary => &PORT_MOTIONS[..7],
-        PortKind::Joint => &JOINT_MOTIONS,
-    }
-}
 
 type TotalRow = (Total, &'static str, &'static str, &'static str, Type);
 
@@ -622,10 +594,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_output_of_blocks_is_in_the_table_of_the_engine() {
-        assert!(BLOCK_OUTPUTS.into_iter().all(|name| place_of_block_output(name).is_some()));
-        let named = BLOCK_QUANTITIES.iter().filter(|quantity| !quantity.column.is_empty()).count();
-        assert_eq!(named, BLOCK_OUTPUTS.len());
+    fn every_output_of_ports_and_blocks_is_in_a_table_of_the_engine() {
+        let kinds = [PortKind::Block, PortKind::Joint];
+        let ports = || kinds.into_iter().flat_map(port_outputs);
+        assert!(ports().all(|name| place_of(&PORT_QUANTITIES, name).is_some()));
+        assert_eq!(ports().count(), PORT_QUANTITIES.len());
+        let is_shown = |name: &&str| BLOCK_QUANTITIES.iter().any(|quantity| quantity.column == *name);
+        assert!(FIRST_BLOCK_OUTPUTS.iter().all(|name| is_shown(&name)));
     }
 
     #[test]

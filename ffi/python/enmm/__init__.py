@@ -59,7 +59,8 @@ from ._ports import Port, Ports
 from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
-from ._types import Energies, Event, PortState, StepInfo, Totals
+from ._types import Event
+from ._values import BLOCK_FIELDS, Energies, PortState, StepInfo, Totals
 
 __version__ = "0.1.0"
 
@@ -73,6 +74,7 @@ def __getattr__(name: str) -> Any:
 __all__ = [
     "ABI_VERSION",
     "BLOCK_DTYPE",
+    "BLOCK_FIELDS",
     "CONTACT_DTYPE",
     "BlockFlag",
     "BufferTooSmallError",

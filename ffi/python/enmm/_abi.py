@@ -123,9 +123,10 @@ class BlockState(ctypes.Structure):
         ("mass", c_double),
         ("kinetic_energy", c_double),
         ("strain_energy", c_double),
-        ("contact_count", c_uint32),
+        ("contacts", c_uint32),
         ("reserved", c_uint32),
-        ("largest_penetration", c_double),
+        ("penetration_max", c_double),
+        ("speed", c_double),
     ]
 
 
@@ -244,6 +245,11 @@ STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_port_state": PortState,
 }
 """Structures by their name in C."""
+
+OLDER_NAMES: dict[str, dict[str, str]] = {
+    "BlockState": {"contacts": "contact_count", "penetration_max": "largest_penetration"},
+}
+"""Older names of fields, by class and name."""
 
 LOG_CALLBACK = ctypes.CFUNCTYPE(None, c_void_p, c_int32, c_char_p)
 """`enmm_log_callback`."""

@@ -21,11 +21,14 @@ LogFunction = Callable[[LogLevel, str], object]
 
 
 def dtype_of(structure: type[ctypes.Structure]) -> np.dtype[np.void]:
-    """The numpy type with the same fields at the same offsets."""
+    """The numpy type with the same fields at the same offsets, which older names find, too."""
     names = [field[0] for field in structure._fields_]
     formats = [np.dtype(field[1]) for field in structure._fields_]
     offsets = [getattr(structure, name).offset for name in names]
-    layout = {"names": names, "formats": formats, "offsets": offsets, "itemsize": ctypes.sizeof(structure)}
+    older = _abi.OLDER_NAMES.get(structure.__name__, {})
+    titles = [older.get(name) for name in names]
+    size = ctypes.sizeof(structure)
+    layout = {"names": names, "formats": formats, "offsets": offsets, "titles": titles, "itemsize": size}
     return np.dtype(layout)  # type: ignore[call-overload, no-any-return, unused-ignore]
 
 

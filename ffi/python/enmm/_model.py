@@ -18,7 +18,8 @@ from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, poi
 from ._errors import BusyError, DeadHandleError, Status, invalid
 from ._library import Library, load_library
 from ._ports import Port, Ports
-from ._types import Energies, Event, StepInfo, Totals
+from ._types import Event
+from ._values import Energies, StepInfo, Totals
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
 """Fields of `Model.blocks`, those of `enmm_block_state`."""
@@ -318,11 +319,7 @@ class Model(Closing):
     def blocks(self, *, copy: bool = False) -> npt.NDArray[np.void]:
         """State of every block, by id: an array with the fields of `enmm_block_state` (`BLOCK_DTYPE`).
 
-        `id`; `flags` (see BlockFlag); `centroid_x`, `centroid_y` (m, now); `displacement_x`, `displacement_y` of the
-        centroid (m); `rotation` (rad, within -pi and pi); `velocity_x`, `velocity_y` (m/s) and `angular_velocity`
-        (rad/s) of half an internal step ago; `mean_stress_xx`, `mean_stress_yy`, `mean_stress_xy` (Pa, tension
-        positive); `area` (m2, undeformed); `mass` (kg/m); `kinetic_energy`, `strain_energy` (J/m); `contact_count` of
-        contacts that carry force; `largest_penetration` (m).
+        `BLOCK_FIELDS` has the meaning and the unit of each; for `flags` see BlockFlag.
 
         The array is a read-only view of a buffer of this model that the next call fills anew: nothing is copied, and
         arrays of earlier calls change with it. With `copy` the array is a new one that stays as it is.

@@ -7,7 +7,7 @@ from . import _abi
 from ._abi import PortKind
 from ._core import Core, number, text
 from ._errors import invalid
-from ._types import PortState
+from ._values import PortState
 
 
 class Port:

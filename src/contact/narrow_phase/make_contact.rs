@@ -280,7 +280,7 @@ impl NarrowPhase<'_> {
             history.sheared = history.shear_force / shear_stiffness;
             history.state = ContactState::Lock;
             // It has rested under this stress.
-            (history.meeting.age, history.felt) = (f32::INFINITY, history.normal_force.max(0.0));
+            (history.meeting.age, history.filtered_normal) = (f32::INFINITY, history.normal_force.max(0.0));
         }
         history
     }

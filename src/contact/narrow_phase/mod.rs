@@ -64,7 +64,7 @@ pub struct NarrowPhase<'a> {
     pub serial: bool,
 }
 
-/// Contacts of one step before they are made: buffers of [`entrance_edges`].
+/// Contacts of one step before they are made: buffers of [`find_contacts`].
 #[derive(Debug, Clone, Default)]
 pub struct AcceptedPairs {
     runs: Vec<Run>,
@@ -110,7 +110,7 @@ impl AcceptedPairs {
 
 /// Applies the vertex rule to the near sides of all nodes that have moved, and fills the contacts of this step, ordered
 /// by node and side.
-pub fn entrance_edges(
+pub fn find_contacts(
     narrow: &NarrowPhase,
     near_pairs: &[NearPair],
     near_sides: &NearSides,

@@ -2,7 +2,7 @@
 
 use crate::contact::constants::CORNER_SHARE;
 use crate::contact::vertex_rule::End;
-use crate::contact::{Corner, EntranceRule, NodeId};
+use crate::contact::{Corner, DetectionRule, NodeId};
 
 use super::{ContactCandidate, NarrowPhase};
 
@@ -37,7 +37,7 @@ impl NarrowPhase<'_> {
     /// springs unloaded: only the part of a face that lies against the other one carries force.
     #[inline(always)]
     pub(super) fn tributary(&self, node: NodeId, candidate: &ContactCandidate) -> Tributary {
-        let EntranceRule { ledge, length_floor, stiffness_floor, .. } = self.rule.constants;
+        let DetectionRule { ledge, length_floor, stiffness_floor, .. } = self.rule.constants;
         let ramp = |overlap: f64| (overlap / (ledge * self.rule.size) - 1.0).clamp(0.0, 1.0);
         let at_ends = ramp(candidate.lengths[0].min(candidate.lengths[1]));
         let Facing { flush, oblique } = self.facing(node, candidate);

@@ -19,7 +19,7 @@ mod rule4_new_contacts;
 use crate::geometry::{Point, Vector};
 
 use super::frame::{EdgeFrame, Frames, right_of};
-use super::{Boundary, ContactHistory, ContactState, EdgeId, EntranceRule, NearPair, NodeId, SideId};
+use super::{Boundary, ContactHistory, ContactState, DetectionRule, EdgeId, NearPair, NodeId, SideId};
 
 pub use last_step::{ContactCache, PenetratingContacts};
 
@@ -39,7 +39,7 @@ pub struct VertexRule<'a> {
     /// Mesh size (m).
     pub size: f64,
     /// Constants.
-    pub constants: EntranceRule,
+    pub constants: DetectionRule,
     /// Cosine of the angle up to which two faces count as parallel.
     pub flush_cosine: f64,
     /// Gap (m) below which a pair becomes a contact of this step.

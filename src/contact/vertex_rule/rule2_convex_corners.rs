@@ -33,7 +33,7 @@
 use crate::contact::{Corner, NodeId, SideEnd, SideId};
 use crate::geometry::{Point, Vector};
 
-use super::{ContactCandidate, End, EntranceRule, VertexRule, right_of};
+use super::{ContactCandidate, DetectionRule, End, VertexRule, right_of};
 
 /// The other facet of two convex corners, beside that of a candidate.
 struct Facet {
@@ -185,7 +185,7 @@ impl VertexRule<'_> {
 
     /// Distance (m) beyond a corner that counts as the corner.
     fn corner_tolerance(&self, candidate: &ContactCandidate) -> f64 {
-        let EntranceRule { held_beyond, corner_tolerance, .. } = self.constants;
+        let DetectionRule { held_beyond, corner_tolerance, .. } = self.constants;
         self.size * if candidate.is_held { held_beyond } else { corner_tolerance }
     }
 }

@@ -18,7 +18,7 @@ mod stage;
 mod warnings;
 
 use crate::contact::{
-    BoltState, Boundary, EntranceRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
+    BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
     Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
@@ -148,7 +148,7 @@ fn model(
     let ground = quiet::Ground { case, positions: &positions, rocks: &rocks, element_rock: &element_rock };
     let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
     tell(BuildStage::Boundary);
-    let boundary = Boundary::new(&covers, outlines, &EntranceRule::default());
+    let boundary = Boundary::new(&covers, outlines, &DetectionRule::default());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
@@ -185,7 +185,7 @@ fn model(
         theta: case.solver.contact_theta,
         mass_scaling: case.solver.mass_scaling,
         tolerance: case.solver.contact_tolerance,
-        entrance: EntranceRule::default(),
+        detection: DetectionRule::default(),
         friction_delay: case.solver.friction_delay,
         sweeps_max: case.solver.sweeps_max,
         penetration_limit: case.solver.penetration_limit * covers.mesh.size,

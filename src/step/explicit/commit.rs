@@ -57,7 +57,7 @@ fn keep_found(model: &Model, state: &mut State, frames: &Frames, selection: &mut
     if has_bonds(&state.laws) || selection.kept_gaps.is_some() {
         state.found.forget();
     } else {
-        state.found.take_over(&mut selection.accepted.found, frames, state.step, &model.entrance);
+        state.found.take_over(&mut selection.accepted.found, frames, state.step, &model.detection);
     }
 }
 

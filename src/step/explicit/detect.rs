@@ -19,9 +19,9 @@ pub(super) fn detect(
     selection: &mut SelectionBuffers,
     contacts: &mut Vec<VertexEdge>,
 ) {
-    let rule = &model.entrance;
+    let rule = &model.detection;
     let gap = rule.reach * model.covers.mesh.size + rule.reach_steps * step.dt * speed_max;
-    contacts::entrance(model, state, step, Reach { gap, ahead: step.dt }, frames, selection, contacts);
+    contacts::find_contacts(model, state, step, Reach { gap, ahead: step.dt }, frames, selection, contacts);
 }
 
 /// Rows of supports and bolts for the iteration.

@@ -47,7 +47,7 @@ fn taken_by_others(model: &Model, YieldBuffers { surfaces, flows, averages }: &Y
         let e = grown.element;
         let surface = surfaces[model.element_rock[e] as usize].as_ref()?;
         let row = ElementRow::new(&model.covers, &model.averaging, e.index()..e.index() + 1);
-        let [to, _] = row.felt(First, &averages.patch_mean, averages.mean[e]);
+        let [to, _] = row.averaged(First, &averages.patch_mean, averages.mean[e]);
         Some(surface.taken_by_others(&grown.strain, grown.mean, to) * model.covers.element_area[e])
     };
     flows.iter().map(|flow| flow.grown.iter().filter_map(of_element).sum::<f64>()).sum()
@@ -120,7 +120,7 @@ impl LaneWork for Means<'_> {
     fn elements<V: Values>(&mut self, values: V, row: &ElementRow, elements: Range<usize>) {
         let Some(strength) = self.model.strength_of(ElementId::new(elements.start)) else { return };
         let own = ElementRow::own(values, &self.volume[elements.clone()]);
-        let [volume, brought] = row.felt(values, self.patch_volume, own);
+        let [volume, brought] = row.averaged(values, self.patch_volume, own);
         let stiffness = values.splat(strength.mean_stress(1.0));
         let out = &mut self.mean[elements.start - self.first..elements.end - self.first];
         store(values, [stiffness * volume, stiffness * brought], out);
@@ -212,19 +212,19 @@ impl LaneWork for Flowing<'_> {
         let Pass { model, surfaces, averages, displacement, .. } = *self.pass;
         let Some(surface) = &surfaces[model.element_rock[elements.start] as usize] else { return };
         let own = ElementRow::own(values, &averages.mean[elements.clone()]);
-        let felt = row.felt(values, &averages.patch_mean, own);
+        let averaged = row.averaged(values, &averages.patch_mean, own);
         let deformation = row.deformation(values, displacement, &model.covers.gradients);
         let here = elements.start - self.first..elements.end - self.first;
         let plastic = ElementRow::plastic(values, &self.plastic[here]);
         let pre = pre_stress(values, model, elements.clone());
-        let trial = surface.trial(&Strained { deformation, mean: felt[0] }, pre.as_ref(), &plastic);
+        let trial = surface.trial(&Strained { deformation, mean: averaged[0] }, pre.as_ref(), &plastic);
         let inside = surface.inside(values, &trial);
         if inside == u8::MAX {
             return;
         }
         let mut out = [[0.0; LANES]; 6];
         let [xx, yy, xy, zz] = trial;
-        for (value, out) in [xx, yy, xy, zz, felt[0], felt[1]].into_iter().zip(&mut out) {
+        for (value, out) in [xx, yy, xy, zz, averaged[0], averaged[1]].into_iter().zip(&mut out) {
             values.store(value, out);
         }
         for (lane, e) in ElementId::range(elements).enumerate() {

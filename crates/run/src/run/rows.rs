@@ -7,7 +7,7 @@ use enmm::geometry::Vector;
 use enmm::model::case::{Axis, StageKind};
 use enmm::model::settle::REST_STEPS;
 use enmm::model::{Case, Simulation, StepReport};
-use enmm_observe::{ENERGIES, REPORT_QUANTITIES, bolts};
+use enmm_observe::{ENERGIES, MONITOR_QUANTITIES, REPORT_QUANTITIES, bolts};
 use enmm_picture::{Series, StageStart};
 
 /// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
@@ -125,9 +125,7 @@ fn film_due(simulation: &Simulation, frames: Option<f64>) -> Due {
 pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
     let mut columns = vec![("time".to_owned(), "s"), ("stage".to_owned(), "")];
     for monitor in &case.monitors {
-        for (part, unit) in [("ux", "m"), ("uy", "m"), ("vx", "m/s"), ("vy", "m/s")] {
-            columns.push((format!("{}_{part}", monitor.name), unit));
-        }
+        columns.extend(MONITOR_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
     }
     columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
     columns.extend(REPORT_QUANTITIES.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
@@ -179,7 +177,7 @@ pub fn row(
     let mut row = vec![report.time, f64::from(stage + 1)];
     for ((u, v), (_, v_after)) in before.iter().zip(after) {
         let velocity = (v * dt + v_after * dt_before) / (dt + dt_before);
-        row.extend([u.x, u.y, velocity.x, velocity.y]);
+        row.extend(MONITOR_QUANTITIES.iter().map(|quantity| (quantity.get)(&(*u, velocity))));
     }
     row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
     row.extend(REPORT_QUANTITIES.iter().map(|quantity| (quantity.get)(report)));

@@ -4,6 +4,7 @@ use engine::geometry::Point;
 use libc::c_char;
 
 use super::pointers;
+use crate::numbers::*;
 use crate::safe::enter::with_model;
 use crate::safe::failure::Failure;
 use crate::types::*;

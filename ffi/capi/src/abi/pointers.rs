@@ -4,8 +4,9 @@ use std::ffi::CStr;
 
 use libc::c_char;
 
+use crate::growing::Growing;
 use crate::safe::failure::{Failure, Outcome};
-use crate::types::{Growing, enmm_status};
+use crate::types::enmm_status;
 
 /// Text of a host.
 ///

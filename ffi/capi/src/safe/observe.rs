@@ -1,13 +1,14 @@
 //! Values that hosts read, in the structures of C.
 
-use engine::cosimulation::{EventKind, PortKind, Totals};
+use engine::cosimulation::{EventKind, PortKind};
 use engine::geometry::{Point, polygon};
+use engine::model::ContactState;
 use engine::model::case::key::list;
 use engine::model::tables::{BlockId, VertexEdge};
-use engine::model::{BlockState, ContactState, Ledger};
 
 use super::failure::{Failure, Outcome};
 use super::model::Model;
+use crate::numbers::*;
 use crate::types::*;
 
 impl Model {
@@ -15,17 +16,17 @@ impl Model {
     pub fn block_states(&self) -> Vec<enmm_block_state> {
         let failed = &self.inner.simulation().state().events.failed;
         let states = self.inner.block_states();
-        states.iter().map(|state| block_state(state, failed[state.id as usize])).collect()
+        states.iter().map(|state| enmm_block_state::new(state, failed[state.id as usize])).collect()
     }
 
     /// Energies and works.
     pub fn energies(&self) -> enmm_energies {
-        energies(&self.inner.totals().ledger)
+        enmm_energies::from(&self.inner.totals().ledger)
     }
 
     /// Sums and extremes.
     pub fn totals(&self) -> enmm_totals {
-        totals(&self.inner.totals())
+        enmm_totals::from(&self.inner.totals())
     }
 
     /// All contacts.
@@ -182,24 +183,7 @@ impl Model {
     /// No such port.
     pub fn port_state(&self, port: u32) -> Result<enmm_port_state, Failure> {
         self.check_port(port)?;
-        let state = self.inner.port_state(port as usize);
-        Ok(enmm_port_state {
-            struct_size: size_of::<enmm_port_state>(),
-            displacement_x: state.displacement.x,
-            displacement_y: state.displacement.y,
-            velocity_x: state.velocity.x,
-            velocity_y: state.velocity.y,
-            rotation: state.rotation,
-            angular_velocity: state.angular_velocity,
-            contact_force_x: state.contact_force.x,
-            contact_force_y: state.contact_force.y,
-            stress_xx: state.stress[0],
-            stress_yy: state.stress[1],
-            stress_xy: state.stress[2],
-            normal_force: state.normal_force,
-            shear_force: state.shear_force,
-            slip: state.slip,
-        })
+        Ok(enmm_port_state::from(&self.inner.port_state(port as usize)))
     }
 
     fn check_port(&self, port: u32) -> Outcome {
@@ -209,146 +193,5 @@ impl Model {
         }
         let remedy = "name the place by `[[port]]` in the case";
         Err(Failure::invalid(format!("port: is {port}, must be less than the number of ports, {count}; {remedy}")))
-    }
-}
-
-/// The table of energies as a structure.
-fn energies(ledger: &Ledger) -> enmm_energies {
-    enmm_energies {
-        struct_size: size_of::<enmm_energies>(),
-        kinetic: ledger.kinetic,
-        strain: ledger.strain,
-        potential: ledger.potential,
-        stored: ledger.stored,
-        friction: ledger.friction,
-        contact_work: ledger.contact_work,
-        support_work: ledger.support_work,
-        damping: ledger.damping,
-        external_work: ledger.external_work,
-        baseline: ledger.baseline,
-        contact_dissipation: ledger.contact_dissipation(),
-        residual: ledger.residual(),
-        yielding: ledger.yielding,
-        bolt_work: ledger.bolts.work,
-        radiation: ledger.radiation,
-        bolt_stored: ledger.bolts.stored,
-        bolt_installed: ledger.bolts.installed,
-        bolt_dissipation: ledger.bolt_dissipation(),
-        fracture: ledger.fracture,
-    }
-}
-
-/// The table of sums and extremes as a structure.
-fn totals(totals: &Totals) -> enmm_totals {
-    enmm_totals {
-        struct_size: size_of::<enmm_totals>(),
-        displacement_max: totals.displacement_max,
-        velocity_max: totals.velocity_max,
-        penetration_max: totals.penetration_max,
-        unbalanced: totals.unbalanced,
-        critical_dt: totals.critical_dt,
-        open_contacts: totals.contacts.open,
-        slipping_contacts: totals.contacts.slipping,
-        locked_contacts: totals.contacts.locked,
-        detached_blocks: totals.detached_blocks,
-        slipped_joints: totals.slipped_joints,
-        failed_blocks: totals.failed_blocks,
-        overlap_max: totals.overlap_max,
-        overlapping_pairs: totals.overlapping_pairs,
-        broken_length: totals.broken_length,
-        broken_joints: totals.broken_joints,
-    }
-}
-
-fn block_state(state: &BlockState, failed: bool) -> enmm_block_state {
-    let flag = |holds: bool, bit: u32| if holds { bit } else { 0 };
-    enmm_block_state {
-        struct_size: size_of::<enmm_block_state>(),
-        id: state.id,
-        flags: flag(state.fixed, ENMM_BLOCK_FIXED)
-            | flag(state.detached, ENMM_BLOCK_DETACHED)
-            | flag(failed, ENMM_BLOCK_FAILED)
-            | flag(state.removed, ENMM_BLOCK_REMOVED),
-        centroid_x: state.centroid.x,
-        centroid_y: state.centroid.y,
-        displacement_x: state.displacement.x,
-        displacement_y: state.displacement.y,
-        rotation: state.rotation,
-        velocity_x: state.velocity.x,
-        velocity_y: state.velocity.y,
-        angular_velocity: state.angular_velocity,
-        mean_stress_xx: state.mean_stress[0],
-        mean_stress_yy: state.mean_stress[1],
-        mean_stress_xy: state.mean_stress[2],
-        area: state.area,
-        mass: state.mass,
-        kinetic_energy: state.kinetic_energy,
-        strain_energy: state.strain_energy,
-        contact_count: state.contacts.count,
-        reserved: 0,
-        largest_penetration: state.contacts.penetration_max,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use engine::cosimulation::{ContactCounts, Quantity, TOTALS};
-    use engine::model::{BoltEnergies, ENERGIES};
-
-    use super::*;
-
-    /// Fields of a structure as its `Debug` writes them, but for its size.
-    fn fields(structure: &str) -> Vec<(&str, f64)> {
-        let inside = structure.split_once(" { ").and_then(|(_, rest)| rest.strip_suffix(" }")).expect("fields");
-        let pairs = inside.split(", ").map(|field| field.split_once(": ").expect("name: value"));
-        pairs.skip(1).map(|(name, value)| (name, value.parse().expect("a number"))).collect()
-    }
-
-    /// A field for every row of the table and a row for every field, with the same value.
-    fn hold<T>(structure: &str, table: &[Quantity<T>], value: &T) {
-        let fields = fields(structure);
-        for quantity in table {
-            let found = fields.iter().find(|(name, _)| *name == quantity.name);
-            assert_eq!(found.map(|field| field.1), Some((quantity.get)(value)), "{}", quantity.name);
-        }
-        assert_eq!(fields.len(), table.len(), "a field that is in no table: {fields:?}");
-    }
-
-    #[test]
-    fn structures_hold_the_tables_of_quantities() {
-        let ledger = Ledger {
-            kinetic: 1.0,
-            strain: 2.0,
-            potential: 4.0,
-            stored: 8.0,
-            friction: 16.0,
-            contact_work: 32.0,
-            support_work: 64.0,
-            damping: 128.0,
-            yielding: 256.0,
-            fracture: 32768.0,
-            bolts: BoltEnergies { work: 512.0, stored: 1024.0, installed: 2048.0 },
-            radiation: 4096.0,
-            external_work: 8192.0,
-            baseline: 16384.0,
-        };
-        hold(&format!("{:?}", energies(&ledger)), &ENERGIES, &ledger);
-        let sums = Totals {
-            ledger,
-            displacement_max: 1.0,
-            velocity_max: 2.0,
-            contacts: ContactCounts { open: 3, slipping: 4, locked: 5 },
-            penetration_max: 6.0,
-            unbalanced: 7.0,
-            critical_dt: 8.0,
-            detached_blocks: 9,
-            slipped_joints: 10,
-            failed_blocks: 11,
-            overlap_max: 12.0,
-            overlapping_pairs: 13,
-            broken_length: 14.0,
-            broken_joints: 15,
-        };
-        hold(&format!("{:?}", totals(&sums)), &TOTALS, &sums);
     }
 }

@@ -192,7 +192,9 @@ static void blocks(enmm_model *model)
     CHECK(fabs(states[BLOCK].area - 1) < 1e-9 && fabs(states[BLOCK].mass - 2500) < 1e-6);
     CHECK(fabs(states[BASE].area - 3.88) < 1e-9);
     CHECK(fabs(states[BLOCK].centroid_x - 0.5) < 1e-3 && fabs(states[BLOCK].centroid_y - 0.5) < 1e-3);
-    CHECK(states[BLOCK].contact_count > 0 && states[BLOCK].mean_stress_yy < 0);
+    CHECK(states[BLOCK].contacts > 0 && states[BLOCK].mean_stress_yy < 0);
+    CHECK(states[BLOCK].contact_count == states[BLOCK].contacts);
+    CHECK(&states[BLOCK].largest_penetration == &states[BLOCK].penetration_max);
     states[0].struct_size = sizeof states[0] - 8;
     CHECK(enmm_get_block_states(model, states, COUNT, &written) == ENMM_INVALID_ARGUMENT);
 }

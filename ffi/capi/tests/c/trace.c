@@ -17,8 +17,8 @@ static void print_states(enmm_model *model)
         const double values[] = {s->centroid_x, s->centroid_y, s->displacement_x, s->displacement_y, s->rotation,
                                  s->velocity_x, s->velocity_y, s->angular_velocity, s->mean_stress_xx, s->mean_stress_yy,
                                  s->mean_stress_xy, s->area, s->mass, s->kinetic_energy, s->strain_energy,
-                                 s->largest_penetration};
-        printf("%" PRIu32 " %" PRIu32, s->id, s->contact_count);
+                                 s->penetration_max};
+        printf("%" PRIu32 " %" PRIu32, s->id, s->contacts);
         for (size_t j = 0; j < sizeof values / sizeof *values; j++) {
             uint64_t bits;
             memcpy(&bits, &values[j], sizeof bits);

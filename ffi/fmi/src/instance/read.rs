@@ -1,12 +1,11 @@
 //! Getters. What the model computes for all outputs at once is kept until it moves.
 
-use enmm::cosimulation::{EventKind, PortState, TOTALS, Totals};
-use enmm::geometry::Vector;
-use enmm::model::{BLOCK_QUANTITIES, BlockState, ENERGIES};
+use enmm::cosimulation::{EventKind, PORT_QUANTITIES, PortState, TOTALS, Totals};
+use enmm::model::{BLOCK_QUANTITIES, BlockState, ENERGIES, MONITOR_QUANTITIES};
 
 use crate::log::Status;
 use crate::phase::{Call, Phase};
-use crate::table::{Axis, Causality, Component, Motion, Quantity, Table, Total, Type};
+use crate::table::{Causality, Quantity, Table, Total, Type};
 
 use super::{Failure, Instance};
 
@@ -116,14 +115,9 @@ impl Instance {
     fn read(&mut self, quantity: Quantity, values: &mut [f64]) {
         match quantity {
             Quantity::Time => values[0] = self.time,
-            Quantity::Port(k, motion) => values[0] = of_port(self.port(k), motion),
-            Quantity::Monitor(k, motion) => {
-                let (displacement, velocity) = self.model.simulation().monitor(k);
-                values[0] = match motion {
-                    Motion::Displacement(axis) => along(displacement, axis),
-                    Motion::Velocity(axis) => along(velocity, axis),
-                    _ => 0.0,
-                };
+            Quantity::Port(k, place) => values[0] = (PORT_QUANTITIES[place].get)(self.port(k)),
+            Quantity::Monitor(k, place) => {
+                values[0] = (MONITOR_QUANTITIES[place].get)(&self.model.simulation().monitor(k));
             }
             Quantity::Total(total) => values[0] = self.total(total),
             Quantity::Blocks(place) => {
@@ -178,34 +172,5 @@ fn kind_number(kind: EventKind) -> f64 {
         EventKind::Failed => 3.0,
         EventKind::Overlapped => 4.0,
         EventKind::Broken => 5.0,
-    }
-}
-
-fn along(vector: Vector, axis: Axis) -> f64 {
-    match axis {
-        Axis::X => vector.x,
-        Axis::Y => vector.y,
-    }
-}
-
-fn component(stress: [f64; 3], component: Component) -> f64 {
-    match component {
-        Component::Xx => stress[0],
-        Component::Yy => stress[1],
-        Component::Xy => stress[2],
-    }
-}
-
-fn of_port(port: &PortState, motion: Motion) -> f64 {
-    match motion {
-        Motion::Displacement(axis) => along(port.displacement, axis),
-        Motion::Velocity(axis) => along(port.velocity, axis),
-        Motion::Rotation => port.rotation,
-        Motion::AngularVelocity => port.angular_velocity,
-        Motion::ContactForce(axis) => along(port.contact_force, axis),
-        Motion::Stress(which) => component(port.stress, which),
-        Motion::NormalForce => port.normal_force,
-        Motion::ShearForce => port.shear_force,
-        Motion::Slip => port.slip,
     }
 }

@@ -4,7 +4,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
-use crate::contact::{EntranceRule, LawId};
+use crate::contact::{DetectionRule, LawId};
 use crate::cover::RegularMesh;
 use crate::geometry::{Arrangement, GeometryError, Point, Vector, polygon};
 use crate::geometry::{VertexId, grid::CellGrid};
@@ -159,7 +159,7 @@ impl Demand<'_> {
 
     /// Pairs of nodes and edges near each other, among as many spread evenly over an area (m²).
     fn pairs(&self, pieces: f64, area: f64) -> f64 {
-        let cutoff = EntranceRule::default().cutoff * self.size();
+        let cutoff = DetectionRule::default().cutoff * self.size();
         pieces * pieces / area.max(cutoff * cutoff) * PI * cutoff * cutoff
     }
 
@@ -316,7 +316,7 @@ impl Demand<'_> {
 
     /// The pieces into which the mesh alone cuts traces; traces that become one at this snap tolerance (m) count once.
     fn dense(&self, traces: &[(Vec<Point>, LawId)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
-        let (step, merged) = (EntranceRule::default().cutoff * self.size(), MERGED * tolerance);
+        let (step, merged) = (DetectionRule::default().cutoff * self.size(), MERGED * tolerance);
         let mut samples = Vec::new();
         for (points, _) in traces {
             let ends = [points.first(), points.last()].into_iter().flatten();
@@ -380,7 +380,7 @@ impl Demand<'_> {
     /// How many sides of blocks lie near each other, when at each position there are some edges, with rock and nodes on
     /// both sides.
     fn near(&self, positions: &[Point], edges: f64) -> Near {
-        let (cutoff, sides) = (EntranceRule::default().cutoff * self.size(), 2.0 * edges);
+        let (cutoff, sides) = (DetectionRule::default().cutoff * self.size(), 2.0 * edges);
         let grid = CellGrid::new(self.low, self.high, cutoff);
         let mut counts = vec![0u32; grid.len()];
         positions.iter().for_each(|&p| counts[grid.cell_of(p)] += 1);

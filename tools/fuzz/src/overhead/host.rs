@@ -11,7 +11,8 @@ use enmm_fmi::table::{Type, Version};
 use enmm_fuzz::abi;
 use enmm_fuzz::buffer::Buffer;
 use enmm_fuzz::fmu::{Fmu, Instance};
-use enmm_fuzz::types::{enmm_model, enmm_port_state, enmm_state, enmm_status, enmm_step_info};
+use enmm_fuzz::numbers::enmm_port_state;
+use enmm_fuzz::types::{enmm_model, enmm_state, enmm_status, enmm_step_info};
 
 use crate::model::Model;
 

@@ -9,10 +9,8 @@ use crate::random::Random;
 use crate::trace::Trace;
 use enmm_fuzz::abi::{inputs, library, model as life, observe, state};
 use enmm_fuzz::buffer::Buffer;
-use enmm_fuzz::types::{
-    enmm_block_state, enmm_contact, enmm_energies, enmm_event, enmm_model, enmm_port_state, enmm_state, enmm_status,
-    enmm_step_info, enmm_totals,
-};
+use enmm_fuzz::numbers::{enmm_block_state, enmm_energies, enmm_port_state, enmm_totals};
+use enmm_fuzz::types::{enmm_contact, enmm_event, enmm_model, enmm_state, enmm_status, enmm_step_info};
 
 /// A block on a slab with a port of every kind.
 pub const CASE: &str = include_str!("../../../../ffi/capi/tests/cases/small.toml");

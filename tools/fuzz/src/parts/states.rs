@@ -14,7 +14,8 @@ use crate::trace::Trace;
 use enmm_fuzz::abi::{model as life, observe, state};
 use enmm_fuzz::buffer::Buffer;
 use enmm_fuzz::fmu::{Fmu, Instance};
-use enmm_fuzz::types::{enmm_block_state, enmm_energies, enmm_model, enmm_port_state, enmm_status};
+use enmm_fuzz::numbers::{enmm_block_state, enmm_energies, enmm_port_state};
+use enmm_fuzz::types::{enmm_model, enmm_status};
 
 /// Internal steps before the good state.
 const MOVED: f64 = 100.5;

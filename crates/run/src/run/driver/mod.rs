@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::check::count_of_notes;
-use crate::film::{Film, NUMBERS, Opening};
+use crate::film::{Film, Opening, numbers};
 use crate::folder::Folder;
 use crate::history::HistoryWriter;
 use crate::motion::PermanentMotion;
@@ -411,8 +411,13 @@ fn film(
     warnings: &[String],
 ) -> io::Result<Film> {
     let columns = rows::columns(simulation.case());
-    let opening =
-        Opening { command: "run", film: directory.join(FILM), axis: Axis::time(), numbers: NUMBERS, columns: &columns };
+    let opening = Opening {
+        command: "run",
+        film: directory.join(FILM),
+        axis: Axis::time(),
+        numbers: numbers(),
+        columns: &columns,
+    };
     let until = resumed.then(|| kept_until(simulation));
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;
     for text in warnings {

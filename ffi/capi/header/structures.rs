@@ -1,0 +1,117 @@
+//! Structures of the header whose members are rows of the engine's tables of quantities.
+
+use engine::cosimulation::{PORT_QUANTITIES, Quantity, TOTALS};
+use engine::model::BLOCK_QUANTITIES;
+
+use super::layout::{self, Kind};
+
+/// Names of members in older headers, which stay beside those of the tables: structure, name, older name.
+pub const OLDER_NAMES: [[&str; 3]; 2] =
+    [["enmm_block_state", "contacts", "contact_count"], ["enmm_block_state", "penetration_max", "largest_penetration"]];
+
+/// Unions without a name, which C has from C11 on and compilers before it.
+const UNION: &str = "
+#if defined(__GNUC__) && !defined(__cplusplus)
+#define ENMM_UNION __extension__ union
+#else
+#define ENMM_UNION union
+#endif
+";
+
+/// Line of the header before the first type.
+const LAST_INCLUDE: &str = "#include <stdint.h>\n";
+
+/// A structure: name, text, members before those of its table, and these.
+struct Structure {
+    name: &'static str,
+    text: &'static str,
+    head: &'static str,
+    members: String,
+}
+
+const BLOCK: &str = "\
+A block now. Velocities are those of half an internal step ago, as the method has them.";
+const BLOCK_HEAD: &str = "\
+    /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+    pub struct_size: usize,
+    /// Block id: 0, 1, ...
+    pub id: u32,
+    /// Sum of ENMM_BLOCK_FIXED, ENMM_BLOCK_DETACHED, ENMM_BLOCK_FAILED, ENMM_BLOCK_REMOVED.
+    pub flags: u32,
+";
+const ENERGIES: &str = "\
+Energies now and works since the start, per metre of thickness. kinetic + strain + potential + damping + yielding
+/// equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.";
+const PORT: &str = "\
+A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
+/// last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
+/// mean along it.";
+const HEAD: &str = "\
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+";
+
+/// The structures as source text of Rust.
+pub fn source() -> String {
+    let structures = [
+        Structure {
+            name: "enmm_block_state",
+            text: BLOCK,
+            head: BLOCK_HEAD,
+            members: members(BLOCK_QUANTITIES.iter()),
+        },
+        Structure { name: "enmm_energies", text: ENERGIES, head: HEAD, members: members(layout::energies()) },
+        Structure {
+            name: "enmm_totals",
+            text: "Sums and extremes over the model.",
+            head: HEAD,
+            members: members(TOTALS.iter()),
+        },
+        Structure { name: "enmm_port_state", text: PORT, head: HEAD, members: members(PORT_QUANTITIES.iter()) },
+    ];
+    let source = |Structure { name, text, head, members }: &Structure| {
+        format!("/// {text}\n#[repr(C)]\npub struct {name} {{\n{head}{members}}}\n")
+    };
+    structures.iter().map(source).collect()
+}
+
+fn members<T: 'static>(table: impl Iterator<Item = &'static Quantity<T>>) -> String {
+    let rows: Vec<_> = table.collect();
+    let mut text = String::new();
+    let mut is_half = false;
+    for quantity in &rows {
+        let kind = Kind::of(*quantity);
+        if is_half && kind != Kind::ShortCount {
+            text += "    /// 0.\n    pub reserved: u32,\n";
+            is_half = false;
+        }
+        is_half ^= kind == Kind::ShortCount;
+        let name = match kind {
+            Kind::Real => "f64",
+            Kind::ShortCount => "u32",
+            Kind::Count => "u64",
+        };
+        let unit = if quantity.unit.is_empty() { String::new() } else { format!(" ({})", quantity.unit) };
+        text += &format!("    /// {}{unit}.\n    pub {}: {name},\n", quantity.text, quantity.name);
+    }
+    text
+}
+
+/// The header with the older names of members beside those of the tables, in unions without a name.
+pub fn with_older_names(header: &str) -> String {
+    let mut text = header.replacen(LAST_INCLUDE, &format!("{LAST_INCLUDE}{UNION}"), 1);
+    for [structure, name, older] in OLDER_NAMES {
+        let Some(start) = text.find(&format!("typedef struct {structure} {{")) else { continue };
+        let end = text[start..].find(&format!("\n}} {structure};")).map_or(text.len(), |length| start + length);
+        let lines: Vec<String> = text[start..end].lines().map(|line| with_older_name(line, name, older)).collect();
+        text.replace_range(start..end, &lines.join("\n"));
+    }
+    text
+}
+
+fn with_older_name(line: &str, name: &str, older: &str) -> String {
+    match line.trim().strip_suffix(&format!(" {name};")) {
+        Some(kind) => format!("  ENMM_UNION {{ {kind} {name}; {kind} {older}; }};"),
+        None => line.to_owned(),
+    }
+}
