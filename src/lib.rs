@@ -14,6 +14,24 @@
 // Parts of the rooms serve the implicit integrator and tests alone.
 #![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports))]
 
+/// Copies a structure with its fields, into what another one has already allocated if that is given. A field that is
+/// not named does not compile.
+macro_rules! clone_without_allocating {
+    ($type:ty { $($field:ident)* }) => {
+        impl Clone for $type {
+            fn clone(&self) -> Self {
+                let Self { $($field),* } = self;
+                Self { $($field: $field.clone()),* }
+            }
+
+            fn clone_from(&mut self, other: &Self) {
+                let Self { $($field),* } = other;
+                $(self.$field.clone_from($field);)*
+            }
+        }
+    };
+}
+
 mod contact;
 pub mod cosimulation;
 mod cover;

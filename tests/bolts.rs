@@ -136,7 +136,7 @@ fn a_saved_state_goes_on_with_the_same_bits() {
     advance(&mut sim, 300);
     let mut other = simulation(&text);
     let mut copy = other.state().clone();
-    copy.copy_from(sim.state());
+    copy.clone_from(sim.state());
     assert!(other.check(&copy).is_ok());
     other.restore(copy);
     advance(&mut sim, 300);

@@ -25,7 +25,7 @@ pub struct FoundContact {
 
 /// Contacts of the last step as they were found, in their order, and where the nodes were when all were found.
 #[doc(alias = "contact recycling")]
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FoundContacts {
     /// The contacts; empty where the next step has to find all of them.
     pub contacts: Vec<FoundContact>,
@@ -33,6 +33,8 @@ pub struct FoundContacts {
     /// Internal steps of all stages before that.
     step: u64,
 }
+
+clone_without_allocating!(FoundContacts { contacts found_at step });
 
 impl FoundContacts {
     /// Positions of the nodes when all contacts were found (m).
@@ -49,14 +51,6 @@ impl FoundContacts {
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
         size_of_val(self.contacts.as_slice()) + size_of_val(self.found_at.as_slice())
-    }
-
-    /// Copies without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        let Self { contacts, found_at, step } = other;
-        self.contacts.clone_from(contacts);
-        self.found_at.clone_from(found_at);
-        self.step = *step;
     }
 
     /// Makes the next step find all contacts.

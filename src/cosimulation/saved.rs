@@ -29,7 +29,7 @@ impl Saved {
 
     /// Takes another state of the same model, into the memory of the old one.
     pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, progress: Progress) {
-        self.state.copy_from(state);
+        self.state.clone_from(state);
         overwrite(&mut self.grid, grid);
         self.progress = progress;
     }
@@ -45,7 +45,7 @@ impl Saved {
 /// Takes over a state of the same model, into the memory of the old one where there was one.
 fn overwrite(own: &mut Option<Box<State>>, new: Option<&State>) {
     match (own.as_mut(), new) {
-        (Some(own), Some(new)) => own.copy_from(new),
+        (Some(own), Some(new)) => (**own).clone_from(new),
         (_, new) => *own = new.cloned().map(Box::new),
     }
 }

@@ -162,7 +162,7 @@ impl Simulation {
 
     /// Takes over another state of this model, as [`Simulation::restore`] does, into the memory of its own.
     pub fn return_to(&mut self, state: &State) {
-        self.built.state.copy_from(state);
+        self.built.state.clone_from(state);
         self.take_up();
     }
 

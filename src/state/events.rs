@@ -51,7 +51,7 @@ impl Event {
 
 /// Everything that happened in dynamic stages, and overlaps of blocks and broken bonds in any stage, in order, and what
 /// is needed to see the next event.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Events {
     /// The events.
     pub list: Vec<Event>,
@@ -71,6 +71,8 @@ pub struct Events {
     pub overlap_max: f64,
 }
 
+clone_without_allocating!(Events { list touching detached slipped failed bonded overlapped overlap_max });
+
 impl Events {
     /// Nothing has happened to so many blocks and joint traces.
     pub fn none(blocks: usize, traces: usize) -> Self {
@@ -84,18 +86,5 @@ impl Events {
             overlapped: Vec::new(),
             overlap_max: 0.0,
         }
-    }
-
-    /// Copies without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        let Self { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max } = other;
-        self.list.clone_from(list);
-        self.touching.clone_from(touching);
-        self.detached.clone_from(detached);
-        self.slipped.clone_from(slipped);
-        self.failed.clone_from(failed);
-        self.bonded.clone_from(bonded);
-        self.overlapped.clone_from(overlapped);
-        self.overlap_max = *overlap_max;
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::Vector;
 use super::{Model, PortKind};
 
 /// Values that a host sets; each holds until it is set again.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Acceleration of gravity (m/s²).
     pub gravity: Vector,
@@ -27,6 +27,8 @@ pub struct Inputs {
     /// Fluid pressure on the faces of each port (Pa), pushing into the rock.
     pub port_pressure: Vec<f64>,
 }
+
+clone_without_allocating!(Inputs { gravity base_acceleration water_level strength_factor block_force block_moment port_traction port_pressure });
 
 impl Inputs {
     /// The values that the case starts with.
@@ -52,32 +54,10 @@ impl Inputs {
         }
         inputs
     }
-
-    /// Copies without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        let Self {
-            gravity,
-            base_acceleration,
-            water_level,
-            strength_factor,
-            block_force,
-            block_moment,
-            port_traction,
-            port_pressure,
-        } = other;
-        self.gravity = *gravity;
-        self.base_acceleration = *base_acceleration;
-        self.water_level = *water_level;
-        self.strength_factor = *strength_factor;
-        self.block_force.clone_from(block_force);
-        self.block_moment.clone_from(block_moment);
-        self.port_traction.clone_from(port_traction);
-        self.port_pressure.clone_from(port_pressure);
-    }
 }
 
 /// Inputs over one communication step: from one set of values to the next, linear in between.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// Values at `since`.
     pub from: Inputs,
@@ -88,6 +68,8 @@ pub struct Drive {
     /// End of the change (s); at or before `since` for a jump.
     pub until: f64,
 }
+
+clone_without_allocating!(Drive { from to since until });
 
 impl Drive {
     /// Inputs that hold for ever.
@@ -107,14 +89,14 @@ impl Drive {
 
     /// Ends the change at once: the values are those of `to`.
     pub fn arrive(&mut self) {
-        self.from.copy_from(&self.to);
+        self.from.clone_from(&self.to);
         self.until = self.since;
     }
 
     /// Takes back a jump that has not acted yet.
     pub fn hold_last(&mut self) {
         if !self.is_moving() {
-            self.to.copy_from(&self.from);
+            self.to.clone_from(&self.from);
         }
     }
 
@@ -131,15 +113,6 @@ impl Drive {
         mix_all(&mut from.port_traction, &to.port_traction, share);
         mix_all(&mut from.port_pressure, &to.port_pressure, share);
         self.since = t;
-    }
-
-    /// Copies without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        let Self { from, to, since, until } = other;
-        self.from.copy_from(from);
-        self.to.copy_from(to);
-        self.since = *since;
-        self.until = *until;
     }
 
     /// Gravity at a share of the way (m/s²).

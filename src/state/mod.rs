@@ -52,7 +52,7 @@ pub struct FrictionDelay {
 }
 
 /// Everything that changes in time and that a checkpoint holds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Stage in progress.
     pub stage: u32,
@@ -124,6 +124,15 @@ pub struct State {
     pub counters: Counters,
 }
 
+clone_without_allocating! {
+    State {
+        stage stage_start stage_starts most_rest stage_step step part dt_last displacement velocity contacts
+        bonds sections found friction_delay neighbours support_force support_rest fix_active removed laws
+        law_switch stage_displacement stage_force drive bolts plastic columns acceleration static_stretch
+        events ledger counters
+    }
+}
+
 impl State {
     /// Time (s) that is left of the internal step in progress.
     pub fn rest_of_step(&self, model: &Model) -> f64 {
@@ -133,75 +142,6 @@ impl State {
     /// Contacts whose bond still has strength, with it.
     pub fn held_bonds(&self) -> impl Iterator<Item = (&ContactHistory, &BondHistory)> {
         self.contacts.iter().zip(&self.bonds).filter(|(contact, bond)| contact.intact && bond.lengths[1] > 0.0)
-    }
-
-    /// Copies another state of the same model without allocating. Every field is named here, so that none is forgotten.
-    pub fn copy_from(&mut self, other: &Self) {
-        let Self {
-            stage,
-            stage_start,
-            stage_starts,
-            most_rest,
-            stage_step,
-            step,
-            part,
-            dt_last,
-            displacement,
-            velocity,
-            contacts: _,
-            bonds: _,
-            sections: _,
-            found: _,
-            friction_delay,
-            neighbours: _,
-            support_force,
-            support_rest,
-            fix_active,
-            removed,
-            laws,
-            law_switch,
-            stage_displacement,
-            stage_force,
-            drive,
-            bolts,
-            plastic,
-            columns,
-            acceleration,
-            static_stretch,
-            events,
-            ledger,
-            counters,
-        } = other;
-        (self.stage, self.stage_start, self.stage_step, self.step) = (*stage, *stage_start, *stage_step, *step);
-        (self.part, self.dt_last, self.static_stretch, self.ledger) = (*part, *dt_last, *static_stretch, *ledger);
-        (self.most_rest, self.friction_delay, self.counters) = (*most_rest, *friction_delay, *counters);
-        self.stage_starts.clone_from(stage_starts);
-        self.displacement.clone_from(displacement);
-        self.velocity.clone_from(velocity);
-        self.copy_contacts(other);
-        self.support_force.clone_from(support_force);
-        self.support_rest.clone_from(support_rest);
-        self.fix_active.clone_from(fix_active);
-        self.removed.clone_from(removed);
-        self.laws.clone_from(laws);
-        self.law_switch.clone_from(law_switch);
-        self.stage_displacement.clone_from(stage_displacement);
-        self.stage_force.clone_from(stage_force);
-        self.bolts.clone_from(bolts);
-        self.plastic.clone_from(plastic);
-        self.columns.clone_from(columns);
-        self.acceleration.clone_from(acceleration);
-        self.drive.copy_from(drive);
-        self.events.copy_from(events);
-    }
-
-    /// Copies contacts, and the search that finds them.
-    fn copy_contacts(&mut self, other: &Self) {
-        self.contacts.clone_from(&other.contacts);
-        self.bonds.clone_from(&other.bonds);
-        self.sections.clone_from(&other.sections);
-        self.found.copy_from(&other.found);
-        self.neighbours.copy_from(&other.neighbours);
     }
 }
 

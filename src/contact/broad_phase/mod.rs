@@ -35,12 +35,14 @@ pub struct NearPair {
 /// Near pairs of the last search, and the positions of the nodes at that time.
 #[doc(alias = "Verlet list")]
 #[doc(alias = "broad phase")]
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NeighbourList {
     /// Near pairs, ordered by node, side and edge.
     pub pairs: Vec<NearPair>,
     found_at: Vec<Point>,
 }
+
+clone_without_allocating!(NeighbourList { pairs found_at });
 
 impl NeighbourList {
     /// Whether a node has moved more than `slack` (m) since the last search.
@@ -58,13 +60,6 @@ impl NeighbourList {
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
         size_of_val(self.pairs.as_slice()) + size_of_val(self.found_at.as_slice())
-    }
-
-    /// Copies without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        let Self { pairs, found_at } = other;
-        self.pairs.clone_from(pairs);
-        self.found_at.clone_from(found_at);
     }
 
     /// Makes the next step search again.

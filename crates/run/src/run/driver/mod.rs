@@ -383,7 +383,7 @@ impl<'a> Driver<'a> {
     }
 
     fn keep_good(&mut self) {
-        self.good.state.copy_from(self.simulation.state());
+        self.good.state.clone_from(self.simulation.state());
         self.good.progress.clone_from(&self.progress);
     }
 }
