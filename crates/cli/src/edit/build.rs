@@ -11,7 +11,7 @@ use enmm::model::case::Invalid;
 use enmm_io::LoadedCase;
 use enmm_run::{NetOptions, apparent, stereonet, write_model_page};
 use enmm_stability::kinematics::Plane;
-use enmm_stability::limit_analysis::{Bound, Way};
+use enmm_stability::limit_analysis::Way;
 
 use super::shown::Shown;
 use crate::case::CaseArguments;
@@ -54,7 +54,7 @@ pub fn build(case: &CaseArguments, face: Option<Plane>, shown: &Shown, bounds: &
                 view.page = Some(pictured.page);
                 view.net = net.map(|(svg, _)| Arc::from(svg.into_bytes()));
             });
-            bounds.ask(number, loaded);
+            let _ = bounds.asked.send((number, loaded));
         }
         Err(error) => shown.change(|view| {
             view.error = Some(error);
@@ -124,16 +124,6 @@ impl BoundDesk {
         let _ = thread::Builder::new().name("bound".to_owned()).spawn(move || answer(&questions, &shown));
         Self { asked }
     }
-
-    fn ask(&self, number: u64, loaded: LoadedCase) {
-        let _ = self.asked.send((number, loaded));
-    }
-}
-
-/// The factors of a bound, how their mechanism moves, and what to know of them.
-fn bound_text(bound: &Bound) -> String {
-    let way = bound.level_tops.way.map(Way::words);
-    std::iter::once(bound.summary()).chain(way).collect::<Vec<_>>().join("; ")
 }
 
 fn answer(questions: &Receiver<(u64, LoadedCase)>, shown: &Shown) {
@@ -144,7 +134,10 @@ fn answer(questions: &Receiver<(u64, LoadedCase)>, shown: &Shown) {
             "rock yields: see `enmm bound`".to_owned()
         } else {
             match enmm_run::bound(&loaded) {
-                Ok(bound) => bound_text(&bound),
+                Ok(bound) => {
+                    let way = bound.level_tops.way.map(Way::words);
+                    std::iter::once(bound.summary()).chain(way).collect::<Vec<_>>().join("; ")
+                }
                 Err(error) => format!("none: {error}"),
             }
         };
