@@ -8,12 +8,12 @@ use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{BRIDGE, BROKEN, GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
 use super::displacement::draw_length;
 use super::legend::{self, Entry, Legend, Sign};
-use super::model::{BoltMark, draw_bolts, draw_label, draw_water};
+use super::model::{BoltMark, draw_tensions, draw_water};
 use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle};
 use super::signs::{OPEN_WIDTH, draw_cross, push_arrow};
 use super::slope::{
-    BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines,
-    draw_filled, draw_title,
+    BELOW_FRAME, LEFT, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines, draw_filled,
+    draw_title,
 };
 use enmm::geometry::{Point, Vector};
 use enmm_observe::{BoltCondition, BondState, ContactState, JointPiece, Snapshot, stress};
@@ -243,7 +243,8 @@ fn vectors_picture(
     });
     sheet.decorate();
     let (unit, size) = unit_of(largest, units);
-    let ticks = if logarithmic { decade_ticks(largest / size) } else { linear_ticks(largest / size) };
+    let decade = |value: f64| (1.0 + (libm::log10(value) - libm::log10(largest / size)) / DECADES, number_text(value));
+    let ticks = if logarithmic { decades(largest / size).map(decade).collect() } else { linear_ticks(largest / size) };
     draw_bar(&mut sheet.sheet, &view.area, &format!("{name} [{unit}]"), &ticks);
     let scale = if logarithmic { ", logarithmic scale" } else { "" };
     sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", three_digits(largest / size)))
@@ -256,12 +257,6 @@ fn linear_ticks(largest: f64) -> Vec<(f64, String)> {
         return vec![(0.0, "0".to_owned())];
     }
     ticks.values.iter().map(|&value| (value / largest, ticks.label(value))).collect()
-}
-
-/// Ticks of a logarithmic scale that ends at `largest`.
-fn decade_ticks(largest: f64) -> Vec<(f64, String)> {
-    let top = libm::log10(largest);
-    decades(largest).map(|value| (1.0 + (libm::log10(value) - top) / DECADES, number_text(value))).collect()
 }
 
 /// 1, 2 and 5 times the powers of ten in the decades below `largest`.
@@ -365,13 +360,7 @@ impl<'a> StageSheet<'a> {
         let (stage, view) = (self.stage, self.view);
         draw_absence(&mut self.sheet, &view, &stage.snapshot.elements);
         self.sheet.clipped(&view.area, |sheet| draw_water(sheet, &view, stage.water));
-        let there: Vec<BoltMark> =
-            stage.bolts.iter().filter(|bolt| bolt.condition != BoltCondition::Absent).cloned().collect();
-        draw_bolts(&mut self.sheet, &view, &there);
-        let mut labels = Labels::new(view.area);
-        for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &bolt.tension_text());
-        }
+        draw_tensions(&mut self.sheet, &view, stage.bolts);
         view.draw_axes(&mut self.sheet);
     }
 
