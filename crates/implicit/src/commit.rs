@@ -121,7 +121,10 @@ impl ImplicitStep<'_> {
     /// Energies and the unbalanced ratio at the start of this sub-step.
     pub(super) fn implicit_report(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let model = self.model;
-        let unbalanced = self.implicit_unbalanced();
+        // The forces out of balance over the applied ones, by the true forces (Eq. 19).
+        self.start_balance();
+        let applied = norm(&self.buffers.start.applied).max(norm(&self.state.stage_force));
+        let unbalanced = unbalanced(norm(&self.buffers.residual), applied);
         let (state, workspace) = (&*self.state, &*self.workspace);
         let mut ledger = state.ledger;
         ledger.kinetic = kinetic_energy(model, implicit, &workspace.mass_matrix, &state.velocity);
@@ -143,13 +146,5 @@ impl ImplicitStep<'_> {
             penetration_max: workspace.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
             speed_max: speed_max(model, state),
         }
-    }
-
-    /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
-    fn implicit_unbalanced(&mut self) -> f64 {
-        self.start_balance();
-        let (state, buffers) = (&*self.state, &self.buffers);
-        let applied = norm(&buffers.start.applied).max(norm(&state.stage_force));
-        unbalanced(norm(&buffers.residual), applied)
     }
 }

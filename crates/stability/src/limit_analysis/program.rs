@@ -237,7 +237,7 @@ impl Rows {
     /// The least of unknown 0.
     fn least(&self) -> Result<DefaultSolution<f64>, Unsolved> {
         let (a, cones) = self.cones();
-        Ok(ACCURACY.least(&a, &self.right, &cones)?)
+        Ok(ACCURACY.least(None, &a, &self.right, &cones)?)
     }
 
     /// The least energy in the springs of all contacts, of which each end bears half.
@@ -250,7 +250,7 @@ impl Rows {
             factors[*shear] = along;
         }
         let (a, cones) = self.cones();
-        Ok(ACCURACY.least_squares(factors, &a, &self.right, &cones)?)
+        Ok(ACCURACY.least(Some(factors), &a, &self.right, &cones)?)
     }
 
     /// Normal forces (N/m) of the contacts.

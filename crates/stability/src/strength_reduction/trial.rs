@@ -261,6 +261,7 @@ impl Base {
         }
         let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
         let end = samples.last().copied().unwrap_or_default();
+        let (yields, has_bars) = (yields(&simulation), simulation.state().bolts.iter().any(|bolt| bolt.active));
         let trial = Trial {
             verdict,
             reason,
@@ -273,8 +274,9 @@ impl Base {
             acceleration: judge::acceleration(&samples),
             failing: self.failing(&simulation, verdict),
             loose: self.loose(&simulation),
-            is_far: end.displacement > self.far && !stretches(&simulation),
-            bars_yield: yields(&simulation),
+            // Slip that stretches bars of which none has yielded is elastic.
+            is_far: end.displacement > self.far && (yields || !has_bars),
+            bars_yield: yields,
             steps: begun_as.steps + simulation.state().step - begun,
             ledger_residual: worse(residual, begun_as.ledger_residual),
             wall: begun_as.wall + clock.elapsed().as_secs_f64(),
@@ -407,11 +409,6 @@ fn given_up(samples: &[Sample], scales: &Scales, geometry: Geometry) -> Option<(
 fn yields(simulation: &Simulation) -> bool {
     let yields = |bolt: &BoltState| matches!(bolt.condition(), BoltCondition::Yielded | BoltCondition::Broken);
     simulation.state().bolts.iter().any(yields)
-}
-
-/// Whether bars are there and none has yielded: slip that stretches them is elastic.
-fn stretches(simulation: &Simulation) -> bool {
-    simulation.state().bolts.iter().any(|bolt| bolt.active) && !yields(simulation)
 }
 
 /// Largest displacement (m) of a block's covers between two states of a model.
