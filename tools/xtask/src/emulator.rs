@@ -5,8 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::platform::Cross;
-use crate::repository::{self, Repository};
-use crate::venv::succeeds;
+use crate::repository::{self, Repository, succeeds};
 
 /// Random numbers for a Wine that lacks the library that has them.
 const RANDOM: &str = "ffi/fmi/tests/c/bcryptprimitives.c";

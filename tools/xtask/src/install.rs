@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::repository::Repository;
+use crate::repository::{self, Repository, write};
 
 /// Libraries of the C ABI, and of the FMUs where they have been built.
 const LIBRARIES: [&str; 4] = ["libenmm.so", "libenmm.a", "libenmm_fmi2.so", "libenmm_fmi3.so"];
@@ -26,9 +26,10 @@ pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
         copy(&repository.root.join(name), &prefix.join("include"))?;
     }
     let version = env!("CARGO_PKG_VERSION");
-    write(&prefix.join("lib/pkgconfig/enmm.pc"), &pkg_config(version))?;
-    write(&prefix.join("lib/cmake/enmm/enmmConfig.cmake"), CMAKE)?;
-    write(&prefix.join("lib/cmake/enmm/enmmConfigVersion.cmake"), &cmake_version(version))?;
+    let cmake = CMAKE.replace("@SYSTEM_LIBRARIES@", &SYSTEM_LIBRARIES.replace(' ', ";"));
+    write(&prefix.join("lib/pkgconfig/enmm.pc"), pkg_config(version))?;
+    write(&prefix.join("lib/cmake/enmm/enmmConfig.cmake"), cmake)?;
+    write(&prefix.join("lib/cmake/enmm/enmmConfigVersion.cmake"), cmake_version(version))?;
     println!("installed in {}", prefix.display());
     Ok(())
 }
@@ -88,19 +89,11 @@ endif()
 }
 
 fn copy(from: &Path, folder: &Path) -> Result<(), String> {
-    let name = from.file_name().ok_or("a path without a name")?;
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let to = folder.join(from.file_name().ok_or("a path without a name")?);
+    repository::make(folder)?;
     // A library that a program has open is replaced, not written over.
-    let to = folder.join(name);
     let _ = std::fs::remove_file(&to);
-    std::fs::copy(from, &to).map(|_| ()).map_err(|error| format!("{}: {error}", from.display()))
-}
-
-fn write(to: &Path, text: &str) -> Result<(), String> {
-    let text = text.replace("@SYSTEM_LIBRARIES@", &SYSTEM_LIBRARIES.replace(' ', ";"));
-    let folder = to.parent().ok_or("a path without a folder")?;
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    std::fs::write(to, text).map_err(|error| format!("{}: {error}", to.display()))
+    std::fs::copy(from, &to).map(|_| ()).map_err(repository::at(from))
 }
 
 #[cfg(test)]

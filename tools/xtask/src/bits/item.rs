@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use super::{Results, read};
+use super::Results;
 use crate::emulator::Emulator;
 use crate::platform::Platform;
 use crate::repository::{self, Repository};
@@ -134,7 +134,7 @@ impl Maker<'_> {
     /// When it does not run, or leaves no results.
     pub fn make(&self, item: &Item) -> Result<Results, String> {
         let place = self.folder.join(item.name);
-        std::fs::create_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))?;
+        repository::make(&place)?;
         let results = match item.act {
             Act::Run => self.run_case(Path::new(&case(item.name)), &place),
             Act::Model(duration) => self.run_case(&self.model_case(item.name, duration)?, &place),
@@ -175,12 +175,12 @@ impl Maker<'_> {
         let mut write = self.repository.command(self.writer);
         repository::capture(write.args(["bench", "--models", name, "--write"]).arg(&folder))?;
         let path = folder.join(name).with_extension("toml");
-        let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+        let text = String::from_utf8_lossy(&repository::read(&path)?).into_owned();
         if !text.contains(ENDLESS) {
             return Err(format!("{}: has no stage with {ENDLESS:?}", path.display()));
         }
         let text = text.replace(ENDLESS, &format!("duration = {duration}\n"));
-        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+        repository::write(&path, text)?;
         Ok(path)
     }
 

@@ -193,10 +193,7 @@ fn renew(repository: &Repository) -> Result<(), String> {
 
 /// A folder for the results, without those of an earlier run.
 fn fresh_folder(repository: &Repository) -> Result<PathBuf, String> {
-    let folder = repository.target.join("bits");
-    repository::remove(&folder)?;
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    Ok(folder)
+    repository::fresh(repository.target.join("bits"))
 }
 
 /// Where two results are not the same first: a name that one of them lacks, or a place in a file.
@@ -210,17 +207,13 @@ fn first_difference(old: &Results, new: &Results) -> Option<String> {
     }
     let (name, old, new) = old.iter().map(|(name, old)| (name, old, &new[name])).find(|(_, old, new)| old != new)?;
     let at = old.iter().zip(new).take_while(|(a, b)| a == b).count();
-    let line = 1 + newlines(&old[..at]);
+    let line = 1 + old[..at].iter().filter(|&&byte| byte == b'\n').count();
     let size = if old.len() == new.len() { String::new() } else { format!(" ({} and {} bytes)", old.len(), new.len()) };
     let lines = [old, new].map(|bytes| std::str::from_utf8(bytes).ok().map(|text| excerpt(text, at)));
     Some(match lines {
         [Some(old), Some(new)] => format!("{name} differs{size} in line {line}: {old:?} became {new:?}"),
         _ => format!("{name} differs{size} from byte {at} on"),
     })
-}
-
-fn newlines(bytes: &[u8]) -> usize {
-    bytes.iter().filter(|&&byte| byte == b'\n').count()
 }
 
 /// Text around a place, within its line.
@@ -234,11 +227,6 @@ fn excerpt(text: &str, at: usize) -> String {
 /// The start of the letter that a byte belongs to.
 fn floor(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|&k| text.is_char_boundary(k)).unwrap_or(0)
-}
-
-/// Reads a file, with its path in the message.
-fn read(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 #[cfg(test)]
