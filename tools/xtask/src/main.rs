@@ -28,52 +28,12 @@ use std::process::ExitCode;
 
 use repository::{Profile, Repository};
 
-const USAGE: &str = "\
-usage: cargo xtask TASK
-
-  test             what a newcomer and every commit runs: format, build, tests, hosts in C and C++,
-                   ctypes, FMPy, header, schema, quick bits; installs nothing outside the target folder
-  test --all       the same first, then what is long or needs other systems: lints, Chromium, rustdoc,
-                   oldest compiler, licences, notebooks, fuzz, faults, sanitizers, long forms
-  test --platforms builds for Windows and for ARM, and compares their quick results, on emulators, with the
-                   golden table
-  python           the Python tests alone
-  long             the long campaigns: tests named long_*, with ENMM_LONG=1
-  fuzz [--minutes N] [--seed S] [--part NAME]
-                   throws wrong cases, joint networks, calls and states at every entrance; without
-                   --minutes the share that test takes
-  faults [--rounds N]
-                   kills, interrupts and starves runs of the program, and compares what they leave
-  sanitize         valgrind and the sanitizers of the nightly compiler, those that are there
-  verify           solves the full set of verification problems and writes docs/verification.md
-                   with its plots; fails when a value is missed that the report did not state
-  compare          runs the comparison of the explicit with the implicit integrator
-  ratio            runs explicit and implicit steps of a continuum and writes the
-                   last section of docs/explicit_vs_implicit.md
-  overhead         tells what a step costs through the C ABI and the FMUs above the engine's own
-  schema           writes docs/case.schema.json
-  reference        writes docs/book/reference.md, the reference of all keys of a case
-  book             builds the site of the documents by mdBook, which it installs in the target folder
-  header           writes include/enmm.h and its layouts for Python
-  install [--debug] --prefix DIR
-                   builds and copies program, libraries, headers, CMake and pkg-config files
-  wheel            builds the Python wheel of this platform, with library and program, in the target folder
-  windows [--test] builds program, libraries and wheel for Windows by mingw-w64 into windows/ of the target
-                   folder; --test runs them under Wine and compares their bits with the golden table
-  aarch64 [--test] the same for Linux on ARM by Debian's cross compiler, run by qemu
-  ensembles        the full campaigns of the ensembles: 1000 samples each against closed forms
-  bench [OPTIONS]  times standard models on one thread and writes tools/bench/; options of enmm bench
-                   such as --models all; with --peers builds other programs, times them turn by turn with
-                   enmm and writes tools/bench/peers.md
-  ab OLD NEW [--models NAMES] [--rounds N] [--threads N]
-                   times two builds of the program in turn and prints the ratios of each part
-  bits [OLD NEW] [--quick]
-                   runs example cases, models, FMUs and problems by two builds and fails at the first bit
-                   of a result that differs; without OLD NEW compares this build with the golden table
-                   tests/golden/bits.csv; --quick takes the share that test takes
-  bits --renew     writes the golden table
-  pictures         runs the main case, the tutorials and the couplings and writes their pictures into docs/pictures
-                   and docs/book/pictures";
+/// The commands as CONTRIBUTING.md lists them.
+fn usage() -> String {
+    let rows = include_str!("../../../CONTRIBUTING.md").lines().filter_map(|line| line.strip_prefix("| `cargo xtask "));
+    let row = |row: &str| Some(row.trim_end_matches(" |").replacen("` | ", "\n      ", 1).replace('`', ""));
+    format!("usage: cargo xtask TASK\n\n  {}", rows.filter_map(row).collect::<Vec<_>>().join("\n  "))
+}
 
 /// The profile by which a task builds.
 fn profile(words: &[&str]) -> Profile {
@@ -117,7 +77,7 @@ fn main() -> ExitCode {
         ["reference"] => book::write_reference(&repository).map(|()| ExitCode::SUCCESS),
         ["book"] => book::build(&repository).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&repository).map(|()| ExitCode::SUCCESS),
-        _ => Err(USAGE.to_owned()),
+        _ => Err(usage()),
     });
     done.unwrap_or_else(|message| {
         eprintln!("{message}");

@@ -67,15 +67,8 @@ fn compare(repository: &Repository, [old, new]: [PathBuf; 2], chosen: impl Fn(&I
     let folder = fresh_folder(repository)?;
     // Cases of models are written by one of the two, so that both compute the same ones.
     let here = Emulator::default();
-    let makers = [(&old, "old"), (&new, "new")].map(|(program, name)| Maker {
-        repository,
-        platform: &HERE,
-        emulator: &here,
-        host: None,
-        program,
-        writer: &new,
-        folder: folder.join(name),
-    });
+    let makers = [(&old, "old"), (&new, "new")]
+        .map(|(program, name)| Maker { writer: &new, ..own(repository, program, folder.join(name), &here) });
     println!("| item | result | old | new |\n|---|---|---|---|");
     for item in ITEMS.iter().filter(|item| chosen(item)) {
         let [old, new] = [makers[0].make(item)?, makers[1].make(item)?];
