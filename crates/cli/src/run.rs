@@ -71,9 +71,6 @@ pub fn check_folder(directory: &Path, loaded: &LoadedCase, force: bool) -> std::
 }
 
 /// From now on the first interrupt requests a checkpoint, and the second ends the program at once.
-///
-/// # Errors
-/// The system does not tell of interrupts.
 pub fn listen() -> Result<(), Failure> {
     let interrupt = || {
         if INTERRUPT.swap(true, Ordering::Relaxed) {
@@ -84,9 +81,6 @@ pub fn listen() -> Result<(), Failure> {
 }
 
 /// Prints a record that was written into the folder of the results.
-///
-/// # Errors
-/// It cannot be read.
 pub fn print_record(directory: &Path, name: &str) -> Result<(), Failure> {
     let text = std::fs::read_to_string(directory.join(name));
     print_line(text.map_err(|error| format!("cannot read {name} again ({error})")).or_fail(FAILED)?.trim_end());

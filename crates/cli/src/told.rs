@@ -69,9 +69,6 @@ impl Failure {
 /// Errors that end a command.
 pub trait OrFail<T> {
     /// The value, or the failure with an exit status.
-    ///
-    /// # Errors
-    /// That of this result.
     fn or_fail(self, status: u8) -> Result<T, Failure>;
 }
 

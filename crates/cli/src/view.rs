@@ -38,9 +38,6 @@ pub fn view(arguments: &Arguments) -> Outcome {
 }
 
 /// Serves browsers on this machine until it is interrupted; `begin` is called when they can come.
-///
-/// # Errors
-/// There is no server, or it cannot go on.
 pub fn serve(server: io::Result<Server>, port: u16, begin: impl FnOnce() -> io::Result<()>) -> Outcome {
     let server = server.map_err(|error| format!("cannot listen at port {port} ({error})")).or_fail(FAILED)?;
     let ended = server.address().and_then(|address| {

@@ -33,9 +33,6 @@ impl Drop for Fmu {
 
 impl Fmu {
     /// The model of a case.
-    ///
-    /// # Errors
-    /// When the case has no model, or its folder cannot be written.
     pub fn new(case: &str, version: Version) -> Result<Self, String> {
         let loaded: LoadedCase = parse_case(case, "case.toml", Path::new("")).map_err(|error| error.to_string())?;
         let model = loaded.cosimulation().map_err(|error| error.to_string())?;
@@ -50,9 +47,6 @@ impl Fmu {
     }
 
     /// A new instance.
-    ///
-    /// # Errors
-    /// When there is none.
     pub fn instance(&self) -> Result<Instance, String> {
         let token = CString::new(self.table.token.as_str()).map_err(|error| error.to_string())?;
         let pointer = match self.version {

@@ -11,9 +11,6 @@ const MDBOOK: &str = "0.5.4";
 /// Folders outside the documents that pages link to.
 const LINKED: [&str; 6] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include", "python_tests"];
 /// Builds the site into `book/docs` in the target folder, with the files that its pages link to beside it.
-///
-/// # Errors
-/// When mdBook cannot be installed, or does not build the site.
 pub fn build(repository: &Repository) -> Result<(), String> {
     let [site, source] = ["book", "book-source"].map(|name| repository.target.join(name));
     repository::remove(&site)?;
@@ -84,9 +81,6 @@ fn mdbook(repository: &Repository) -> Result<PathBuf, String> {
 }
 
 /// Writes the reference of the keys from schema, validation and cases.
-///
-/// # Errors
-/// When a key has no example, or the page cannot be written.
 pub fn write_reference(repository: &Repository) -> Result<(), String> {
     let mut test = repository.cargo(&["test", "--package", "enmm-io", "--test", "io", "key_reference"]);
     repository::run(test.env("ENMM_WRITE_REFERENCE", "1"))

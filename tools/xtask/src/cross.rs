@@ -44,9 +44,6 @@ pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Resu
 /// Builds libraries and program for a platform by the profile of tests, compares quick results of that build, on its
 /// emulator, with the golden table, with those of FMUs and a rollback, and calls every function of the C library. Says
 /// what it leaves out where the machine lacks something.
-///
-/// # Errors
-/// When something does not compile or does not run.
 pub fn quick(repository: &Repository, platform: &Platform) -> Result<Counts, String> {
     let purpose = format!("tests for {}", platform.name);
     let Some(cross) = platform.cross.as_ref().filter(|cross| is_ready(cross, &purpose)) else {

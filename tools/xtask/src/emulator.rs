@@ -19,9 +19,6 @@ pub struct Emulator {
 
 impl Emulator {
     /// Sets up the emulator of a platform, which is installed.
-    ///
-    /// # Errors
-    /// When Wine cannot make its folder.
     pub fn of(repository: &Repository, cross: &Cross) -> Result<Self, String> {
         let mut emulator = Self { words: cross.emulator, variables: Vec::new() };
         if cross.emulator != ["wine"] {

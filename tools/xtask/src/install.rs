@@ -12,9 +12,6 @@ const HEADERS: [&str; 2] = ["include/enmm.h", "ffi/cpp/enmm.hpp"];
 const SYSTEM_LIBRARIES: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 
 /// Builds everything and installs it below `prefix`.
-///
-/// # Errors
-/// When something does not build or cannot be copied.
 pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
     repository.build(&["--workspace"])?;
     let from = |name: &str| repository.built().join(name);

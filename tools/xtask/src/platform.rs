@@ -163,9 +163,6 @@ impl Platform {
     }
 
     /// Copies a binary without its symbols and line tables, which only developers need.
-    ///
-    /// # Errors
-    /// When the file is missing, or its symbols cannot be removed.
     pub fn strip(&self, repository: &Repository, from: &Path, to: &Path) -> Result<(), String> {
         std::fs::copy(from, to).map_err(repository::at(from))?;
         let Some([program, options @ ..]) = self.strip else { return Ok(()) };

@@ -74,9 +74,6 @@ impl Share {
 }
 
 /// Runs the short case, then pytest over a share of the tests.
-///
-/// # Errors
-/// When the environment cannot be made or the case does not run.
 pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     let results = repository.target.join("python-results");
     repository::remove(&results)?;

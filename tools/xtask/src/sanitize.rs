@@ -42,17 +42,11 @@ const TOOLS: [Tool; 6] = [
 ];
 
 /// Runs all tools that are there; fails when one finds something.
-///
-/// # Errors
-/// When a tool finds something.
 pub fn run(repository: &Repository) -> Result<(), String> {
     run_tools(repository, &TOOLS)
 }
 
 /// The same with those that look at the hosts in C and need no build of their own.
-///
-/// # Errors
-/// A finding of a tool.
 pub fn over_hosts(repository: &Repository) -> Result<(), String> {
     run_tools(repository, &TOOLS[..2])
 }

@@ -7,9 +7,6 @@ use crate::repository::{self, Beside, Repository, succeeds};
 use crate::venv;
 
 /// Runs cargo-deny with `deny.toml`: licences, sources and duplicates always, advisories where they can be fetched.
-///
-/// # Errors
-/// When a dependency is not as `deny.toml` allows.
 pub fn deny(repository: &Repository) -> Result<(), String> {
     let Some(program) = deny_program(repository) else {
         println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny --locked`)");
@@ -81,9 +78,6 @@ fn promised(manifest: &str) -> Result<String, String> {
 }
 
 /// Fails when a file contains the path of a folder of the machine that built it.
-///
-/// # Errors
-/// When it does, or cannot be read.
 pub fn no_build_paths(file: &Path, folders: &[String]) -> Result<(), String> {
     let bytes = repository::read(file)?;
     match folders.iter().find(|folder| contains(&bytes, folder)) {

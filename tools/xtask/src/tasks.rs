@@ -34,26 +34,17 @@ const PICTURES: [[&str; 4]; 17] = [
 const COUPLINGS: [&str; 3] = ["earthquake", "reservoir", "twin"];
 
 /// Runs a program of the verification crate: `report` writes the manual, `compare` sets the integrators side by side.
-///
-/// # Errors
-/// When it does not build, or ends with another status than 0.
 pub fn verification(repository: &Repository, program: &str) -> Result<(), String> {
     let run = ["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program];
     repository::run(repository.cargo(&run).env("ENMM_LABEL", label(repository)?))
 }
 
 /// Prints the cost of a step through every export.
-///
-/// # Errors
-/// When the program does not build or run.
 pub fn overhead(repository: &Repository) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--bin", "enmm-overhead"]))
 }
 
 /// Writes the schema of the case file as the command line prints it.
-///
-/// # Errors
-/// When the program does not build or run, or the file cannot be written.
 pub fn write_schema(repository: &Repository) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli"])?;
     let schema = schema(repository)?;
@@ -64,9 +55,6 @@ pub fn write_schema(repository: &Repository) -> Result<(), String> {
 
 /// Times standard models on one thread, or with `--peers` in `options` other programs beside enmm, and writes tables
 /// and plots with commit and date.
-///
-/// # Errors
-/// When the program does not build or run.
 pub fn write_benchmark(repository: &Repository, options: &[&str]) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli", "--package", "enmm-peers"])?;
     let beside_others = options.iter().any(|option| option.starts_with("--peers"));
@@ -88,9 +76,6 @@ fn label(repository: &Repository) -> Result<String, String> {
 
 /// Runs the cases of the documents and copies their pictures to where the pages show them; then the coupling examples,
 /// which draw the pictures of `docs/coupling.md`.
-///
-/// # Errors
-/// When a case does not run or a picture is missing.
 pub fn write_pictures(repository: &Repository) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli", "--package", "enmm-capi"])?;
     let docs = repository.root.join("docs");
@@ -114,9 +99,6 @@ pub fn write_pictures(repository: &Repository) -> Result<(), String> {
 }
 
 /// Writes the C header that belongs to the sources of the C ABI.
-///
-/// # Errors
-/// When its program does not build or run, or the file cannot be written.
 pub fn write_header(repository: &Repository) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["run", "--quiet", "--package", "enmm-capi", "--example", "header"]))?;
     println!("wrote the header of the C ABI");

@@ -118,9 +118,6 @@ pub fn ensembles(repository: &Repository) -> ExitCode {
 }
 
 /// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
-///
-/// # Errors
-/// When the program does not build, or finds something.
 pub fn fuzz(repository: &Repository, words: &[&str]) -> Result<(), String> {
     repository.build(&["--workspace"])?;
     throw(repository, words)
@@ -152,9 +149,6 @@ fn cargo_test(repository: &Repository, words: &[&str], extent: Option<(&str, &st
 }
 
 /// The schema as the program prints it.
-///
-/// # Errors
-/// When the program does not run.
 pub fn schema(repository: &Repository) -> Result<Vec<u8>, String> {
     repository::capture(repository.command(repository.enmm()).arg("schema"))
 }

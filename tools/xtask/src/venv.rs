@@ -38,9 +38,6 @@ pub fn prepare(repository: &Repository, packages: Packages) {
 }
 
 /// Python of the environment, which finds the package `enmm` and its library.
-///
-/// # Errors
-/// When the environment cannot be made.
 pub fn command(repository: &Repository, packages: Packages) -> Result<Command, String> {
     let mut python = repository.command(environment(repository, packages)?);
     python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", repository.built().join(HERE.library("enmm")));
@@ -51,9 +48,6 @@ pub fn command(repository: &Repository, packages: Packages) -> Result<Command, S
 }
 
 /// A program that pip installed in the environment.
-///
-/// # Errors
-/// When the environment cannot be made.
 pub fn program(repository: &Repository, name: &str) -> Result<Option<PathBuf>, String> {
     let path =
         environment(repository, Packages::All)?.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));

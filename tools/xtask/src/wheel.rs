@@ -52,9 +52,6 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
 }
 
 /// Makes the wheel of what has been built.
-///
-/// # Errors
-/// As [`build`].
 pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, String> {
     let (binaries, wheels) = (platform.shipped(repository), platform.wheels(repository));
     repository::fresh(binaries.clone())?;

@@ -129,9 +129,6 @@ pub struct Maker<'a> {
 
 impl Maker<'_> {
     /// Runs an item.
-    ///
-    /// # Errors
-    /// When it does not run, or leaves no results.
     pub fn make(&self, item: &Item) -> Result<Results, String> {
         let place = self.folder.join(item.name);
         repository::make(&place)?;
@@ -148,9 +145,6 @@ impl Maker<'_> {
     }
 
     /// Removes the files of an item: frames of all items together would take more than a gigabyte.
-    ///
-    /// # Errors
-    /// When the file system refuses it.
     pub fn forget(&self, item: &Item) -> Result<(), String> {
         repository::remove(&self.folder.join(item.name))
     }

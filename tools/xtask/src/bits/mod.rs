@@ -46,18 +46,12 @@ pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
 }
 
 /// Prints how many results are as in the golden table.
-///
-/// # Errors
-/// When one is not.
 pub fn all_good(counts: Counts) -> Result<(), String> {
     println!("{} as in the golden table, {} others", counts.passed, counts.failed);
     if counts.failed == 0 { Ok(()) } else { Err(format!("{} results have other bits: see above", counts.failed)) }
 }
 
 /// The items that `cargo xtask test` compares with the golden table.
-///
-/// # Errors
-/// When an item does not run, or the table cannot be read.
 pub fn quick(repository: &Repository) -> Result<Counts, String> {
     against_golden(repository, |item| item.quick)
 }
@@ -89,9 +83,6 @@ fn compare(repository: &Repository, [old, new]: [PathBuf; 2], chosen: impl Fn(&I
 
 /// Compares the quick items by the build for another platform with the golden table, but for [`item::LONG_EMULATED`].
 /// `host` runs its FMUs.
-///
-/// # Errors
-/// As [`quick`].
 pub fn elsewhere(
     repository: &Repository,
     platform: &Platform,

@@ -46,9 +46,6 @@ pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
 }
 
 /// Tries all faults in each round.
-///
-/// # Errors
-/// When the undisturbed run fails.
 pub fn rounds_of(repository: &Repository, rounds: u64) -> Result<Counts, String> {
     let place = Place::new(repository)?;
     let mut counts = Counts::default();

@@ -83,9 +83,6 @@ impl Place {
     }
 
     /// Goes on from the checkpoint in `name`, or from the start where there is none, to the end; compares.
-    ///
-    /// # Errors
-    /// When the run fails or its results are others than those of the undisturbed one.
     pub fn complete(&self, name: &str) -> Result<(), String> {
         let checkpoint = self.path(name).join("checkpoint.enmm");
         let answer = self.finish(self.start(name, Some(checkpoint.as_path()).filter(|path| path.exists()))?)?;
