@@ -49,7 +49,11 @@ pub fn fmu(arguments: &Arguments) -> Outcome {
     let folder = output.parent().unwrap_or(Path::new(""));
     let made = if folder.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(folder) };
     made.and_then(|()| write_atomic(&output, &packed.bytes)).map_err(unwritten).or_fail(BAD_INPUT)?;
-    print_line(&line(&packed, version, &output));
+    let Packed { bytes, variables, blocks, .. } = packed;
+    let number = if version == table::Version::Two { "2.0" } else { "3.0" };
+    let many = if blocks == 1 { "" } else { "s" };
+    let (place, size) = (output.display(), bytes.len() as f64 / 1e6);
+    print_line(&format!("{place}: FMI {number}, {size:.1} MB, {variables} variables, {blocks} block{many}"));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -107,12 +111,4 @@ fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), Fai
     let bytes = read_input(&path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
     let library = Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))?;
     Ok((path, library))
-}
-
-fn line(packed: &Packed, version: table::Version, output: &Path) -> String {
-    let Packed { bytes, variables, blocks, .. } = packed;
-    let number = if version == table::Version::Two { "2.0" } else { "3.0" };
-    let many = if *blocks == 1 { "" } else { "s" };
-    let size = bytes.len() as f64 / 1e6;
-    format!("{}: FMI {number}, {size:.1} MB, {variables} variables, {blocks} block{many}", output.display())
 }

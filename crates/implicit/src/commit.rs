@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use enmm::geometry::Vector;
 use enmm::internals::contact::ContactState;
 use enmm::internals::state::{Ledger, State, Workspace};
 use enmm::internals::step::{
@@ -10,6 +11,7 @@ use enmm::internals::step::{
 
 use super::balance::norm;
 use super::choices::{Implicit, Rule};
+use super::consistent::push_mass;
 use super::motion::kinetic_energy;
 use super::step::{ImplicitStep, Inertia};
 
@@ -72,9 +74,11 @@ impl ImplicitStep<'_> {
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
         works.damping = (inertia.end - 0.5) * numerical;
         if inertia.rests {
-            self.buffers.field.clone_from(&self.buffers.moved);
-            self.mass_times_field(implicit);
-            let buffers = &self.buffers;
+            let buffers = &mut *self.buffers;
+            buffers.residual.fill(Vector::zeros());
+            for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
+                push_mass(mass, *ids, &buffers.moved, &mut buffers.residual);
+            }
             let spent: f64 = buffers.residual.iter().zip(&buffers.moved).map(|(p, u)| p.dot(u)).sum();
             works.damping += inertia.factor * spent;
         }

@@ -73,7 +73,10 @@ impl ImplicitStep<'_> {
                 break false;
             }
             if factor_due {
-                if !self.refactor(inertia) {
+                let clock = Instant::now();
+                self.singular = self.implicit_factorise(inertia).is_err();
+                self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+                if self.singular {
                     break false;
                 }
                 factors += 1;
@@ -197,15 +200,6 @@ impl ImplicitStep<'_> {
         if implicit.rule == Rule::Trapezoidal {
             buffers.offset.iter_mut().zip(&state.acceleration).for_each(|(offset, a)| *offset -= a);
         }
-    }
-
-    /// A new factor for the contacts in their new states; false when the matrix is not positive definite.
-    fn refactor(&mut self, inertia: &Inertia) -> bool {
-        let clock = Instant::now();
-        let done = self.implicit_factorise(inertia).is_ok();
-        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
-        self.singular = !done;
-        done
     }
 
     /// Solves for the forces out of balance.

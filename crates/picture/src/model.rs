@@ -241,7 +241,10 @@ impl Model<'_> {
     fn draw(&self, sheet: &mut Sheet, view: &View) {
         sheet.clipped(&view.area, |sheet| {
             self.draw_pond(sheet, view);
-            self.draw_by_rock(sheet, view);
+            let rock = |k: usize| self.snapshot.rock.get(k).map_or(0, |&rock| rock as usize);
+            draw_filled(sheet, &self.snapshot.elements, view, &ROCKS, rock);
+            self.draw_outlines(sheet, view);
+            self.draw_joints(sheet, view);
             self.draw_water(sheet, view);
             self.draw_boxes(sheet, view);
         });
@@ -254,15 +257,6 @@ impl Model<'_> {
         self.draw_ports_and_monitors(sheet, view, &mut labels);
         self.draw_sets(sheet, view, &mut labels);
         view.draw_axes(sheet);
-    }
-
-    /// Rocks in their colours, and joints.
-    fn draw_by_rock(&self, sheet: &mut Sheet, view: &View) {
-        let snapshot = self.snapshot;
-        let rock = |k: usize| snapshot.rock.get(k).map_or(0, |&rock| rock as usize);
-        draw_filled(sheet, &snapshot.elements, view, &ROCKS, rock);
-        self.draw_outlines(sheet, view);
-        self.draw_joints(sheet, view);
     }
 
     /// Joints, thinner where there are many.

@@ -104,15 +104,11 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
     let mut sheet = StageSheet::new(stage, MARGIN, "states of joints");
     sheet.draw_rock();
     let view = sheet.view;
-    let mut paths = BTreeMap::new();
-    let mut lengths = [0.0; 3];
-    for joint in joints.iter().filter(|joint| joint.ends.iter().all(is_drawable)) {
-        let state = joint.state as usize;
-        lengths[state] += (joint.ends[1] - joint.ends[0]).norm();
-        paths.entry(state).or_insert_with(Path::default).line(joint.ends.map(|end| view.pixel(&end)));
-    }
-    let bonds = [BondState::Holds, BondState::Broken].map(|state| of_bonds(joints, state, &view));
-    let path = |state: ContactState| paths.get(&(state as usize)).cloned().unwrap_or_default();
+    let states = [ContactState::Open, ContactState::Slip, ContactState::Lock];
+    let states = states.map(|state| of_joints(joints, &view, |joint| joint.state == state));
+    let bonds = [BondState::Holds, BondState::Broken];
+    let bonds = bonds.map(|state| of_joints(joints, &view, |joint| joint.bond == state));
+    let path = |state: ContactState| states[state as usize].0.clone();
     let fine = if joints.len() > 6000 { 0.6 } else { 1.0 };
     sheet.sheet.clipped(&view.area, |sheet| {
         sheet.path(path(ContactState::Lock), Style::line(LOCK, 1.8 * fine));
@@ -124,9 +120,9 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         sheet.path(bonds[1].0.clone(), Style::line(BROKEN, (BRIDGE_WIDTH - 2.4) * fine));
     });
     sheet.decorate();
-    let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let total = states.iter().map(|(_, length)| length).sum::<f64>().max(f64::MIN_POSITIVE);
     let entry = |state: ContactState, sign, name: &str| {
-        let length = lengths[state as usize];
+        let length = states[state as usize].1;
         Entry::new(sign, format!("{name}: {} m, {} %", number_text(length.round()), (100.0 * length / total).round()))
     };
     let entries = vec![
@@ -150,10 +146,10 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
     sheet.close_with(&legends)
 }
 
-/// Joints whose bond is in a state, and their length (m).
-fn of_bonds(joints: &[JointPiece], state: BondState, view: &View) -> (Path, f64) {
+/// Some of the joints, and their length (m).
+fn of_joints(joints: &[JointPiece], view: &View, are: impl Fn(&JointPiece) -> bool) -> (Path, f64) {
     let mut found = (Path::default(), 0.0);
-    for joint in joints.iter().filter(|joint| joint.bond == state && joint.ends.iter().all(is_drawable)) {
+    for joint in joints.iter().filter(|joint| are(joint) && joint.ends.iter().all(is_drawable)) {
         found.0.line(joint.ends.map(|end| view.pixel(&end)));
         found.1 += (joint.ends[1] - joint.ends[0]).norm();
     }

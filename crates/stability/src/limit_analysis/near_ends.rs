@@ -129,5 +129,5 @@ impl Blocks {
 }
 
 fn status(unsolved: Unsolved) -> String {
-    format!("the linear program was not solved ({:?})", unsolved.status)
+    format!("the linear program was not solved ({unsolved:?})")
 }

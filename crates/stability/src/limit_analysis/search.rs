@@ -1,7 +1,5 @@
 //! The strength at which equilibrium ends, and the choice of facets between corners that face each other.
 
-use clarabel::solver::SolverStatus;
-
 use super::contact::Contact;
 use super::corner::Corner;
 use super::program::{Program, Solution, Unsolved};
@@ -113,9 +111,7 @@ impl Search<'_> {
             stride *= stride;
         }
         match (limit.low, limit.high) {
-            (Some(low), Some(high)) if high > low * (1.0 + WIDE) => {
-                Err(Unsolved { status: SolverStatus::MaxIterations })
-            }
+            (Some(low), Some(high)) if high > low * (1.0 + WIDE) => Err(Unsolved::MaxIterations),
             _ => Ok(limit),
         }
     }
