@@ -49,9 +49,24 @@ impl Fmu {
     /// A new instance.
     pub fn instance(&self) -> Result<Instance, String> {
         let token = CString::new(self.table.token.as_str()).map_err(|error| error.to_string())?;
+        let folder = self.folder.display();
+        let (name, no) = (c"fuzz".as_ptr(), false);
         let pointer = match self.version {
-            Version::Two => instance2(&token, &self.folder)?,
-            Version::Three => instance3(&token, &self.folder)?,
+            Version::Two => {
+                let uri = CString::new(format!("file://{folder}/resources")).map_err(|error| error.to_string())?;
+                let functions = fmi2::CallbackFunctions::NONE;
+                let (kind, token, uri) = (fmi2::CO_SIMULATION, token.as_ptr(), uri.as_ptr());
+                // SAFETY: texts and functions are there.
+                unsafe { fmi2::fmi2Instantiate(name, kind, token, uri, &raw const functions, 0, 0) }
+            }
+            Version::Three => {
+                let path = CString::new(format!("{folder}/resources/")).map_err(|error| error.to_string())?;
+                let (token, path, at) = (token.as_ptr(), path.as_ptr(), null_mut());
+                // SAFETY: texts are there.
+                unsafe {
+                    fmi3::fmi3InstantiateCoSimulation(name, token, path, no, no, no, no, null(), 0, at, None, None)
+                }
+            }
         };
         if pointer.is_null() { Err("no instance".to_owned()) } else { Ok(Instance { version: self.version, pointer }) }
     }
@@ -71,24 +86,6 @@ impl Fmu {
             list.filter(|v| v.causality == Causality::Output && v.kind == Type::Real && v.name != "unbalanced_ratio");
         list.map(|v| (v.reference, v.size())).collect()
     }
-}
-
-fn instance2(token: &CString, folder: &Path) -> Result<*mut c_void, String> {
-    let uri = CString::new(format!("file://{}/resources", folder.display())).map_err(|error| error.to_string())?;
-    let functions = fmi2::CallbackFunctions::NONE;
-    let (name, kind) = (c"fuzz".as_ptr(), fmi2::CO_SIMULATION);
-    // SAFETY: texts and functions are there.
-    Ok(unsafe { fmi2::fmi2Instantiate(name, kind, token.as_ptr(), uri.as_ptr(), &raw const functions, 0, 0) })
-}
-
-fn instance3(token: &CString, folder: &Path) -> Result<*mut c_void, String> {
-    let path = CString::new(format!("{}/resources/", folder.display())).map_err(|error| error.to_string())?;
-    let (name, token, path) = (c"fuzz".as_ptr(), token.as_ptr(), path.as_ptr());
-    let no = false;
-    // SAFETY: texts are there.
-    Ok(unsafe {
-        fmi3::fmi3InstantiateCoSimulation(name, token, path, no, no, no, no, null(), 0, null_mut(), None, None)
-    })
 }
 
 /// The call of the version of an instance.

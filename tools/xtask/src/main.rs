@@ -26,6 +26,7 @@ mod wheel;
 
 use std::process::ExitCode;
 
+use python::Share;
 use repository::{Profile, Repository};
 
 /// The commands as CONTRIBUTING.md lists them.
@@ -51,11 +52,11 @@ fn main() -> ExitCode {
         ["test"] => Ok(test::usual(&repository)),
         ["test", "--all"] => Ok(test::all(&repository)),
         ["test", "--platforms"] => Ok(test::platforms(&repository)),
-        ["python"] => Ok(test::python(&repository)),
+        ["python"] => Ok(test::python(&repository, "python", Share::All)),
         ["long"] => Ok(test::long(&repository)),
         ["fuzz", ref words @ ..] => test::fuzz(&repository, words).map(|()| ExitCode::SUCCESS),
         ["faults", ref words @ ..] => faults::run(&repository, words).map(|()| ExitCode::SUCCESS),
-        ["sanitize"] => sanitize::run(&repository).map(|()| ExitCode::SUCCESS),
+        ["sanitize"] => sanitize::run(&repository, false).map(|()| ExitCode::SUCCESS),
         ["verify"] => tasks::verification(&repository, "report").map(|()| ExitCode::SUCCESS),
         ["compare"] => tasks::verification(&repository, "compare").map(|()| ExitCode::SUCCESS),
         ["overhead"] => tasks::overhead(&repository).map(|()| ExitCode::SUCCESS),
@@ -67,7 +68,7 @@ fn main() -> ExitCode {
         ["wheel"] => wheel::build(&repository, &platform::HERE).map(|_| ExitCode::SUCCESS),
         ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
         ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),
-        ["ensembles"] => Ok(test::ensembles(&repository)),
+        ["ensembles"] => Ok(test::python(&repository, "ensembles", Share::Ensembles)),
         ["bench", ref options @ ..] => tasks::write_benchmark(&repository, options).map(|()| ExitCode::SUCCESS),
         ["ab", ref words @ ..] => {
             ab::Comparison::read(words).and_then(|found| found.run(&repository)).map(|()| ExitCode::SUCCESS)

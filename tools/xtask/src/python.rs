@@ -67,10 +67,6 @@ impl Share {
             Self::Ensembles => vec![ENSEMBLES],
         }
     }
-
-    fn packages(self) -> Packages {
-        if self == Self::Usual { Packages::Usual } else { Packages::All }
-    }
 }
 
 /// Runs the short case, then pytest over a share of the tests.
@@ -78,7 +74,7 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     let results = repository.target.join("python-results");
     repository::remove(&results)?;
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
-    let mut pytest = venv::command(repository, share.packages())?;
+    let mut pytest = venv::command(repository, if share == Share::Usual { Packages::Usual } else { Packages::All })?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "-n", WORKERS, "--dist", "loadfile"]);
     pytest.args(share.arguments());
     if share == Share::Ensembles {

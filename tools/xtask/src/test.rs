@@ -85,7 +85,7 @@ fn take_others(repository: &Repository, steps: &mut Steps, oldest: Result<Option
     steps.take("other python", || python::test(repository, Share::Others));
     steps.take("faults", || faults::rounds_of(repository, 1));
     steps.take("fuzz", || throw(repository, &[]));
-    steps.take("sanitizers", || sanitize::over_hosts(repository));
+    steps.take("sanitizers", || sanitize::run(repository, true));
     steps.take("oldest compiler", || oldest?.map_or(Ok(()), Beside::finish));
 }
 
@@ -107,29 +107,19 @@ pub fn long(repository: &Repository) -> ExitCode {
     steps.close()
 }
 
-/// Builds, and runs all Python tests.
-pub fn python(repository: &Repository) -> ExitCode {
-    built(repository, "python", || python::test(repository, Share::All))
-}
-
-/// Builds, and runs the full campaigns of the ensembles in Python.
-pub fn ensembles(repository: &Repository) -> ExitCode {
-    built(repository, "ensembles", || python::test(repository, Share::Ensembles))
+/// Builds, and runs a share of the Python tests.
+pub fn python(repository: &Repository, name: &str, share: Share) -> ExitCode {
+    let mut steps = Steps::default();
+    if steps.take("build", || repository.build(&["--workspace", "--examples"])) {
+        steps.take(name, || python::test(repository, share));
+    }
+    steps.close()
 }
 
 /// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
 pub fn fuzz(repository: &Repository, words: &[&str]) -> Result<(), String> {
     repository.build(&["--workspace"])?;
     throw(repository, words)
-}
-
-fn built(repository: &Repository, name: &str, act: impl FnOnce() -> Result<Counts, String>) -> ExitCode {
-    let mut steps = Steps::default();
-    let build = || repository.build(&["--workspace", "--examples"]);
-    if steps.take("build", build) {
-        steps.take(name, act);
-    }
-    steps.close()
 }
 
 fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {

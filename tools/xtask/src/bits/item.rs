@@ -19,11 +19,12 @@ pub struct Item {
     pub quick: bool,
     /// Whether it is in the golden table.
     pub golden: bool,
-    act: Act,
+    /// How it is run.
+    pub act: Act,
 }
 
 /// How an item is run.
-enum Act {
+pub enum Act {
     /// An example case, all its stages.
     Run,
     /// A model of `enmm bench` for so much simulated time (s).
@@ -81,11 +82,6 @@ impl Item {
     /// Version of FMI of an item that is an FMU.
     pub fn version(&self) -> Option<&'static str> {
         if let Act::Fmu(_, version) = self.act { Some(version) } else { None }
-    }
-
-    /// Whether it uses the mathematical functions of the system, as the cases of verification problems do.
-    pub fn asks_system(&self) -> bool {
-        matches!(self.act, Act::Verify(_))
     }
 }
 
