@@ -9,7 +9,7 @@ use enmm_verification::bench::{
     BenchOptions, BenchReport, LARGE, Measured, Model, Origin, REPORT_FILES, STANDARD, bench, write_report,
 };
 
-use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
+use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line, tell_line};
 
 /// Models to time, and options.
 #[derive(clap::Args)]
@@ -45,21 +45,14 @@ pub struct Arguments {
 }
 
 /// Times models and prints what they cost.
-pub fn run(arguments: &Arguments) -> ExitCode {
-    let models = match models(&arguments.models) {
-        Ok(models) => models,
-        Err(name) => {
-            let message = format!("there is no model {name:?}: try {}, or all", names(&STANDARD));
-            return fail(&message, BAD_INPUT);
-        }
-    };
+pub fn run(arguments: &Arguments) -> Outcome {
+    let unknown = |name: &str| format!("there is no model {name:?}: try {}, or all", names(&STANDARD));
+    let models = models(&arguments.models).map_err(unknown).or_fail(BAD_INPUT)?;
     if let Some(folder) = &arguments.write {
         return write_cases(&models, folder);
     }
-    if let Some(folder) = &arguments.output
-        && let Err(error) = make_place(folder, &REPORT_FILES)
-    {
-        return fail(&error, BAD_INPUT);
+    if let Some(folder) = &arguments.output {
+        make_place(folder, &REPORT_FILES).or_fail(BAD_INPUT)?;
     }
     let options = BenchOptions {
         models,
@@ -73,18 +66,15 @@ pub fn run(arguments: &Arguments) -> ExitCode {
             tell_line(&format!("{name} …"));
         }
     };
-    let report = match bench(&options, &mut begin) {
-        Ok(report) => report,
-        Err(error) => return fail(&error, FAILED),
-    };
+    let report = bench(&options, &mut begin).or_fail(FAILED)?;
     let origin = Origin::of(&arguments.label, "enmm", std::env::args().skip(1));
     let written = arguments.output.as_ref().map_or(Ok(()), |folder| write_report(&report, &origin, folder));
     print_line(&if arguments.json { format!("{:#}", serde_json::json!(report)) } else { text(&report) });
-    written.map_or_else(|error| fail(&error, FAILED), |()| ExitCode::SUCCESS)
+    written.map(|()| ExitCode::SUCCESS).or_fail(FAILED)
 }
 
 /// Writes the case of each model into a file of its name.
-fn write_cases(models: &[Model], folder: &Path) -> ExitCode {
+fn write_cases(models: &[Model], folder: &Path) -> Outcome {
     let write = || -> std::io::Result<()> {
         std::fs::create_dir_all(folder)?;
         models.iter().try_for_each(|model| {
@@ -95,7 +85,7 @@ fn write_cases(models: &[Model], folder: &Path) -> ExitCode {
         })
     };
     let refused = |error| format!("cannot write to {} ({error}): choose another directory", folder.display());
-    write().map_err(refused).map_or_else(|message| fail(&message, BAD_INPUT), |()| ExitCode::SUCCESS)
+    write().map(|()| ExitCode::SUCCESS).map_err(refused).or_fail(BAD_INPUT)
 }
 
 fn models(names: &[String]) -> Result<Vec<Model>, &str> {

@@ -14,8 +14,7 @@ use serde_json::Value;
 
 use crate::case::CaseArguments;
 use crate::run::{check_folder, directory_for};
-use crate::told::{self, Told};
-use crate::{BAD_INPUT, FAILED, fail, listed, print_line};
+use crate::{BAD_INPUT, FAILED, Failure, OrFail, Outcome, fail, listed, print_line, told};
 
 /// Arguments of `enmm bound`.
 #[derive(Args)]
@@ -87,34 +86,28 @@ impl Found {
 }
 
 /// Finds the bounds of a case, prints them and writes their page.
-pub fn bound(arguments: &Arguments) -> ExitCode {
+pub fn bound(arguments: &Arguments) -> Outcome {
+    find(arguments).map_err(|failure| failure.json(arguments.json))
+}
+
+fn find(arguments: &Arguments) -> Outcome {
     let json = arguments.json;
     let directory = arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "bound"));
-    let mut loaded = match arguments.case.load() {
-        Ok(loaded) => loaded,
-        Err(error) => return Told::default().refuse(&error, json, BAD_INPUT),
-    };
-    match look(arguments, &mut loaded, &directory) {
-        Ok((_held, found)) => {
-            print_line(&if json { found.record().to_string() } else { found.text() });
-            let written = write_bound(&directory, &loaded, arguments.stage.as_deref(), &found.record());
-            if let Err(error) = written.and_then(|()| found.write_page(&directory, &loaded)) {
-                return fail(&format!("cannot write results ({error}): choose another directory with -o"), FAILED);
-            }
-            if !json {
-                print_line(&format!("{:<21} {}", "page to open", directory.join(PAGE).display()));
-            }
-        }
-        Err(error) => {
-            let (told, status) = match error {
-                BoundFailure::Case(_) => (Told::of(&loaded), BAD_INPUT),
-                BoundFailure::Unsolved(_) => (Told::of(&loaded), FAILED),
-                _ => (Told::default(), BAD_INPUT),
-            };
-            return told.refuse(&error, json, status);
-        }
+    let mut loaded = arguments.case.load().or_fail(BAD_INPUT)?;
+    let (_held, found) = look(arguments, &mut loaded, &directory).map_err(|error| match error {
+        BoundFailure::Case(_) => Failure::new(error, BAD_INPUT).on(&loaded),
+        BoundFailure::Unsolved(_) => Failure::new(error, FAILED).on(&loaded),
+        _ => Failure::new(error, BAD_INPUT),
+    })?;
+    print_line(&if json { found.record().to_string() } else { found.text() });
+    let written = write_bound(&directory, &loaded, arguments.stage.as_deref(), &found.record());
+    if let Err(error) = written.and_then(|()| found.write_page(&directory, &loaded)) {
+        return Ok(fail(&format!("cannot write results ({error}): choose another directory with -o"), FAILED));
     }
-    ExitCode::SUCCESS
+    if !json {
+        print_line(&format!("{:<21} {}", "page to open", directory.join(PAGE).display()));
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Cuts the case after the stage that is looked at; the folder for its results, and its bounds.

@@ -27,9 +27,6 @@ impl CaseArguments {
     }
 
     /// Reads the case with further values.
-    ///
-    /// # Errors
-    /// As [`CaseArguments::load`].
     pub fn load_with(&self, more: &[String]) -> Result<LoadedCase, CaseError> {
         load_case_with(&self.path, &[&self.settings, more].concat())
     }

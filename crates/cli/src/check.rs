@@ -14,8 +14,7 @@ use enmm_run::{Folder, Observer};
 use crate::case::CaseArguments;
 use crate::progress::Screen;
 use crate::run::check_folder;
-use crate::told::Told;
-use crate::{BAD_INPUT, FAILED, print_line};
+use crate::{BAD_INPUT, FAILED, Failure, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm check`.
 #[derive(Args)]
@@ -35,31 +34,31 @@ pub struct Arguments {
 }
 
 /// Builds the model of a case, prints what it is, and draws it into a directory if there is one.
-pub fn check(arguments: &Arguments) -> ExitCode {
-    let Arguments { ref output, json, .. } = *arguments;
-    let directory = output.as_deref();
-    let loaded = match arguments.case.load() {
-        Ok(loaded) => loaded,
-        Err(error) => return Told::default().refuse(&error, json, BAD_INPUT),
-    };
-    let mut screen = Screen::new(json);
+pub fn check(arguments: &Arguments) -> Outcome {
+    show(arguments).map_err(|failure| failure.json(arguments.json))
+}
+
+fn show(arguments: &Arguments) -> Outcome {
+    let directory = arguments.output.as_deref();
+    let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
+    let mut screen = Screen::new(arguments.json);
     let looked = look(arguments, &loaded, &mut screen);
-    screen.close();
-    let (simulation, _held, found) = match looked {
-        Ok(looked) => looked,
-        Err(message) => return Told::of(&loaded).refuse(&message, json, BAD_INPUT),
-    };
-    if let Some(Err(error)) = directory.map(|directory| enmm_run::draw_checked(&simulation, directory)) {
-        let message = format!("cannot draw the model ({error}): choose another directory with -o");
-        return Told::default().refuse(&message, json, FAILED);
+    drop(screen);
+    let (simulation, _held, found) = looked.map_err(|message| Failure::new(message, BAD_INPUT).on(&loaded))?;
+    if let Some(directory) = directory {
+        enmm_run::draw_checked(&simulation, directory).map_err(undrawn).or_fail(FAILED)?;
     }
-    if json {
-        print_line(&json_line(&found));
+    if arguments.json {
+        print_line(&serde_json::to_string(&found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}")));
     } else {
         let picture = |directory: &Path| format!("\n{:<21} {}", "picture", directory.join("model.png").display());
         print_line(&(table(&found) + &directory.map_or(String::new(), picture)));
     }
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
+}
+
+fn undrawn(error: std::io::Error) -> String {
+    format!("cannot draw the model ({error}): choose another directory with -o")
 }
 
 /// The model of a case, the folder for its picture, and the report.
@@ -72,8 +71,8 @@ fn look(
     if let Some(directory) = directory {
         check_folder(directory, loaded, arguments.force).map_err(|error| error.to_string())?;
     }
-    let held = directory.map(|directory| Folder::open(directory, loaded.source.inputs())).transpose();
-    let held = held.map_err(|error| format!("cannot draw the model ({error}): choose another directory with -o"))?;
+    let held = directory.map(|directory| Folder::open(directory, loaded.source.inputs()));
+    let held = held.transpose().map_err(undrawn)?;
     let invalid =
         |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message).to_string();
     let build = enmm_implicit::build(loaded.case.clone(), &mut |stage| screen.build(stage));
@@ -129,10 +128,6 @@ fn bridges(found: &[BridgeRecord]) -> Vec<String> {
     let more = found.len().saturating_sub(BRIDGES);
     let more = (more > 0).then(|| format!("and {more} rock bridges more: --json has all"));
     found.iter().take(BRIDGES).map(tell).chain(more).collect()
-}
-
-fn json_line(found: &Check) -> String {
-    serde_json::to_string(found).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }
 
 fn table(found: &Check) -> String {

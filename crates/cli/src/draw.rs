@@ -8,17 +8,13 @@ use enmm::model::case::{Ensemble, RandomCorrelation, RandomVariable};
 use enmm_ensemble::{Identity, Value, draw_from, sample_key};
 use serde_json::{Value as Json, from_value, json};
 
-use crate::{BAD_INPUT, fail, print_line};
+use crate::{BAD_INPUT, OrFail, Outcome, print_line};
 
 /// Reads a request from standard input; prints the samples, and the key of each in a store.
-pub fn draw() -> ExitCode {
-    match std::io::read_to_string(std::io::stdin()).map_err(|error| error.to_string()).and_then(|text| answer(&text)) {
-        Ok(answer) => {
-            print_line(&answer);
-            ExitCode::SUCCESS
-        }
-        Err(message) => fail(&message, BAD_INPUT),
-    }
+pub fn draw() -> Outcome {
+    let text = std::io::read_to_string(std::io::stdin()).or_fail(BAD_INPUT)?;
+    print_line(&answer(&text).or_fail(BAD_INPUT)?);
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The answer to a request: an object with the tables `random`, `random_correlation` and `ensemble` of a case, its

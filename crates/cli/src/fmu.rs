@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use enmm_fmi::pack::{PackError, Packed, pack};
 use enmm_fmi::platform::Library;
 use enmm_fmi::{library, table};
-use enmm_io::files::read_input;
+use enmm_io::files::{read_input, write_atomic};
 
 use crate::case::CaseArguments;
-use crate::{BAD_INPUT, FAILED, fail, print_line, tell_line};
+use crate::{BAD_INPUT, FAILED, Failure, OrFail, Outcome, print_line, tell_line};
 
 /// Arguments of `enmm fmu`.
 #[derive(Args)]
@@ -38,24 +38,27 @@ enum Version {
 }
 
 /// Packs a case and reports what was written. Nothing is written unless all of it is.
-pub fn fmu(arguments: &Arguments) -> ExitCode {
+pub fn fmu(arguments: &Arguments) -> Outcome {
     let version = match arguments.fmi {
         Version::Two => table::Version::Two,
         Version::Three => table::Version::Three,
     };
     let output = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.case.path));
-    let packed = match packed(arguments, version, &output) {
-        Ok(packed) => packed,
-        Err((message, status)) => return fail(&message, status),
-    };
+    let packed = packed(arguments, version, &output)?;
     packed.warnings.iter().for_each(|warning| tell_line(&format!("warning: {warning}")));
     let folder = output.parent().unwrap_or(Path::new(""));
     let made = if folder.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(folder) };
-    if let Err(error) = made.and_then(|()| enmm_io::files::write_atomic(&output, &packed.bytes)) {
-        return fail(&format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
-    }
-    print_line(&line(&packed, version, &output));
-    ExitCode::SUCCESS
+    made.and_then(|()| write_atomic(&output, &packed.bytes)).map_err(unwritten).or_fail(BAD_INPUT)?;
+    let Packed { bytes, variables, blocks, .. } = packed;
+    let number = if version == table::Version::Two { "2.0" } else { "3.0" };
+    let many = if blocks == 1 { "" } else { "s" };
+    let (place, size) = (output.display(), bytes.len() as f64 / 1e6);
+    print_line(&format!("{place}: FMI {number}, {size:.1} MB, {variables} variables, {blocks} block{many}"));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn unwritten(error: std::io::Error) -> String {
+    format!("cannot write the FMU ({error}): choose another file with -o")
 }
 
 /// The name of the case file with another extension, in the current directory.
@@ -65,9 +68,9 @@ fn default_output(case: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Result<Packed, (String, u8)> {
+fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Result<Packed, Failure> {
     let case = arguments.case.path.as_path();
-    let loaded = arguments.case.load().map_err(|error| (error.to_string(), BAD_INPUT))?;
+    let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
     let mut inputs = loaded.source.inputs().to_vec();
     let mut libraries = Vec::new();
     for given in &arguments.library {
@@ -80,27 +83,27 @@ fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Resu
         inputs.push(path);
         libraries.push(library);
     }
-    let refuse = |error| (format!("cannot write the FMU ({error}): choose another file with -o"), BAD_INPUT);
-    enmm_run::check_output(output, &inputs).map_err(refuse)?;
+    enmm_run::check_output(output, &inputs).map_err(unwritten).or_fail(BAD_INPUT)?;
     let name = case.file_name().unwrap_or_default().to_string_lossy();
     pack(&loaded, &name, version, &libraries).map_err(|error| {
         let status = if matches!(error, PackError::Part(..)) { FAILED } else { BAD_INPUT };
-        (error.to_string(), status)
+        Failure::new(error, status)
     })
 }
 
 /// The library beside this program.
-fn own(version: table::Version) -> Result<(PathBuf, Library), (String, u8)> {
-    let program = std::env::current_exe().map_err(|error| (format!("cannot find this program ({error})"), FAILED))?;
-    let path = library::find(version, &program).map_err(|error| (error.to_string(), BAD_INPUT))?;
-    let unreadable = |error| (format!("{}: cannot read the library ({error})", path.display()), BAD_INPUT);
-    let bytes = read_input(&path).map_err(unreadable)?;
+fn own(version: table::Version) -> Result<(PathBuf, Library), Failure> {
+    let program = std::env::current_exe();
+    let program = program.map_err(|error| format!("cannot find this program ({error})")).or_fail(FAILED)?;
+    let path = library::find(version, &program).or_fail(BAD_INPUT)?;
+    let unreadable = |error| format!("{}: cannot read the library ({error})", path.display());
+    let bytes = read_input(&path).map_err(unreadable).or_fail(BAD_INPUT)?;
     Ok((path, Library::of_this_system(version, bytes)))
 }
 
 /// A library that was given as `PLATFORM=PATH`.
-fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), (String, u8)> {
-    let wrong = |reason: String| (format!("--library {given}: {reason}"), BAD_INPUT);
+fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), Failure> {
+    let wrong = |reason: String| Failure::new(format!("--library {given}: {reason}"), BAD_INPUT);
     let (platform, path) = given
         .split_once('=')
         .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm_fmi3.dll".to_owned()))?;
@@ -108,12 +111,4 @@ fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), (St
     let bytes = read_input(&path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
     let library = Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))?;
     Ok((path, library))
-}
-
-fn line(packed: &Packed, version: table::Version, output: &Path) -> String {
-    let Packed { bytes, variables, blocks, .. } = packed;
-    let number = if version == table::Version::Two { "2.0" } else { "3.0" };
-    let many = if *blocks == 1 { "" } else { "s" };
-    let size = bytes.len() as f64 / 1e6;
-    format!("{}: FMI {number}, {size:.1} MB, {variables} variables, {blocks} block{many}", output.display())
 }

@@ -19,9 +19,10 @@ use enmm_stability::strength_reduction::{
 
 use crate::case::CaseArguments;
 use crate::progress::Search;
-use crate::run::{INTERRUPT, check_folder, directory_for, interrupt};
-use crate::told::{self, Told};
-use crate::{AT_MOST, BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
+use crate::run::{INTERRUPT, check_folder, directory_for, listen, print_record};
+use crate::{
+    AT_MOST, BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, fail, listed, print_line, tell_line, told,
+};
 
 /// Arguments of `enmm fos`.
 #[derive(Args)]
@@ -73,7 +74,11 @@ const HEAD: &str = "trial           F  verdict   by            time (s)  displac
                     failing    steps  wall (s)";
 
 /// Finds the factor of safety of a case.
-pub fn fos(arguments: &Arguments) -> ExitCode {
+pub fn fos(arguments: &Arguments) -> Outcome {
+    find(arguments).map_err(|failure| failure.json(arguments.json))
+}
+
+fn find(arguments: &Arguments) -> Outcome {
     let options = FosOptions {
         directory: arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "fos")),
         low: arguments.low,
@@ -85,19 +90,10 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
         stage: arguments.stage.clone(),
         interrupt: Some(&INTERRUPT),
     };
-    if let Err(message) = options.check() {
-        return refuse(arguments, &message, BAD_INPUT);
-    }
-    let loaded = match arguments.case.load() {
-        Ok(loaded) => loaded,
-        Err(error) => return refuse(arguments, &error, BAD_INPUT),
-    };
-    if let Err(error) = check_folder(&options.directory, &loaded, arguments.force) {
-        return refuse(arguments, &error, BAD_INPUT);
-    }
-    if let Err(error) = ctrlc::set_handler(interrupt) {
-        return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
-    }
+    options.check().or_fail(BAD_INPUT)?;
+    let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
+    check_folder(&options.directory, &loaded, arguments.force).or_fail(BAD_INPUT)?;
+    listen()?;
     let left_out = left_out_stages(&loaded.case).filter(|_| !arguments.json && arguments.stage.is_none());
     if let Some(warning) = &left_out {
         tell_line(&format!("warning: {warning}"));
@@ -117,22 +113,15 @@ pub fn fos(arguments: &Arguments) -> ExitCode {
         });
     };
     let found = enmm_run::fos(&loaded, &options, &mut hear);
-    search.close();
-    match found {
-        Ok(found) => report(arguments, &found, &options.directory, left_out.as_ref()),
-        Err(error @ FosError::NoRest(_)) => Told::of(&loaded).refuse(&error, arguments.json, FAILED),
-        Err(error @ FosError::Case(_)) => Told::of(&loaded).refuse(&error, arguments.json, BAD_INPUT),
-        Err(error @ FosError::Output(_)) => refuse(arguments, &error, FAILED),
-        Err(error @ FosError::Interrupted) => refuse(arguments, &error, INTERRUPTED),
-        Err(error) => refuse(arguments, &error, BAD_INPUT),
-    }
-}
-
-fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -> ExitCode {
-    if arguments.json {
-        print_line(&serde_json::json!({ "error": message.to_string() }).to_string());
-    }
-    fail(message, status)
+    drop(search);
+    let found = found.map_err(|error| match error {
+        FosError::NoRest(_) => Failure::new(error, FAILED).on(&loaded),
+        FosError::Case(_) => Failure::new(error, BAD_INPUT).on(&loaded),
+        FosError::Output(_) => Failure::new(error, FAILED),
+        FosError::Interrupted => Failure::new(error, INTERRUPTED),
+        _ => Failure::new(error, BAD_INPUT),
+    })?;
+    report(arguments, &found, &options.directory, left_out.as_ref())
 }
 
 /// A trial in words, with its number and about how many there will be, as a JSON object.
@@ -160,12 +149,9 @@ fn row(t: &Trial, progress: Progress) -> String {
 }
 
 /// Prints what was found, without the warning that was printed before the first trial.
-fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&String>) -> ExitCode {
+fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&String>) -> Outcome {
     if arguments.json {
-        match std::fs::read_to_string(directory.join("fos.json")) {
-            Ok(text) => print_line(text.trim_end()),
-            Err(error) => return refuse(arguments, &format!("cannot read fos.json again ({error})"), FAILED),
-        }
+        print_record(directory, "fos.json")?;
     } else {
         let results = format!("{:<20} {}\n", "results", directory.display());
         let page = format!("{:<20} {}", "page to open", directory.join(PAGE).display());
@@ -175,7 +161,7 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
     }
     let main = found.main();
     let message = remedy(main).unwrap_or_default();
-    match main.end {
+    Ok(match main.end {
         End::Found | End::StableThroughout if main.at_most().is_some() => {
             let doubt = main.doubt().unwrap_or_default();
             fail(&format!("the factor of safety is at most the upper bound of limit analysis: {doubt}"), AT_MOST)
@@ -189,7 +175,7 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
         }
         End::Interrupted => fail(&message, INTERRUPTED),
         End::UnstableThroughout | End::Failed(_) => fail(&message, FAILED),
-    }
+    })
 }
 
 /// Results of a search, as lines of a name and a text.

@@ -27,6 +27,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use output::{fail, listed, print_line, tell_line};
+use told::{Failure, OrFail, Outcome};
 
 /// Bad input; nothing was written.
 const BAD_INPUT: u8 = 2;
@@ -104,15 +105,14 @@ enum Command {
 
 fn main() -> ExitCode {
     match Arguments::try_parse() {
-        Ok(arguments) => output::finish(execute(arguments.command)),
+        Ok(arguments) => output::finish(execute(arguments.command).unwrap_or_else(|failure| failure.tell())),
         Err(told) => output::tell(&told),
     }
 }
 
-fn execute(command: Command) -> ExitCode {
-    if let Err(message) = enmm_lanes::requested() {
-        return fail(&format!("{}: {message}", enmm_lanes::VARIABLE), BAD_INPUT);
-    }
+fn execute(command: Command) -> Outcome {
+    let lanes = enmm_lanes::requested();
+    lanes.map_err(|message| format!("{}: {message}", enmm_lanes::VARIABLE)).or_fail(BAD_INPUT)?;
     match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
@@ -135,7 +135,7 @@ fn execute(command: Command) -> ExitCode {
     }
 }
 
-fn schema() -> ExitCode {
+fn schema() -> Outcome {
     print_line(&format!("{:#}", enmm_io::schema()));
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
-use crate::{Arguments as Program, FAILED, fail, print_line};
+use crate::{Arguments as Program, FAILED, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm completions`.
 #[derive(Args)]
@@ -25,31 +25,21 @@ pub struct ManArguments {
     output: PathBuf,
 }
 
-/// The commands that users call.
-fn command() -> Command {
-    Program::command()
-}
-
 /// Prints the script by which a shell completes commands and options.
-pub fn completions(arguments: &CompletionArguments) -> ExitCode {
+pub fn completions(arguments: &CompletionArguments) -> Outcome {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut command(), "enmm", &mut script);
+    clap_complete::generate(arguments.shell, &mut Program::command(), "enmm", &mut script);
     print_line(String::from_utf8_lossy(&script).trim_end());
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Writes a manual page of each command.
-pub fn man(arguments: &ManArguments) -> ExitCode {
-    let directory = &arguments.output;
-    let written = std::fs::create_dir_all(directory).and_then(|()| clap_mangen::generate_to(command(), directory));
-    match written {
-        Ok(()) => {
-            print_line(&format!("{}: a page of each command; man -l {0}/enmm.1 shows the first", directory.display()));
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            let place = directory.display();
-            fail(&format!("cannot write pages to {place} ({error}): choose another directory with -o"), FAILED)
-        }
-    }
+pub fn man(arguments: &ManArguments) -> Outcome {
+    let (directory, place) = (&arguments.output, arguments.output.display());
+    let made = std::fs::create_dir_all(directory);
+    made.and_then(|()| clap_mangen::generate_to(Program::command(), directory))
+        .map_err(|error| format!("cannot write pages to {place} ({error}): choose another directory with -o"))
+        .or_fail(FAILED)?;
+    print_line(&format!("{place}: a page of each command; man -l {place}/enmm.1 shows the first"));
+    Ok(ExitCode::SUCCESS)
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 
-use crate::{BAD_INPUT, fail, print_line};
+use crate::{BAD_INPUT, Failure, OrFail, Outcome, print_line};
 
 /// Name of the schema that the cases name, so that editors explain and complete keys.
 const SCHEMA: &str = "case.schema.json";
@@ -35,61 +35,46 @@ enum Kind {
 }
 
 impl Kind {
-    fn name(self) -> &'static str {
+    /// Name of its case, and the case.
+    fn template(self) -> (&'static str, &'static str) {
         match self {
-            Self::Slope => "slope",
-            Self::Topple => "topple",
-            Self::Pit => "pit",
-            Self::Coupled => "coupled",
-        }
-    }
-
-    fn text(self) -> &'static str {
-        match self {
-            Self::Slope => include_str!("../templates/slope.toml"),
-            Self::Topple => include_str!("../templates/topple.toml"),
-            Self::Pit => include_str!("../templates/pit.toml"),
-            Self::Coupled => include_str!("../templates/coupled.toml"),
+            Self::Slope => ("slope.toml", include_str!("../templates/slope.toml")),
+            Self::Topple => ("topple.toml", include_str!("../templates/topple.toml")),
+            Self::Pit => ("pit.toml", include_str!("../templates/pit.toml")),
+            Self::Coupled => ("coupled.toml", include_str!("../templates/coupled.toml")),
         }
     }
 }
 
 /// Writes a case, and the schema beside it if there is none yet.
-pub fn new(arguments: &Arguments) -> ExitCode {
-    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", arguments.kind.name())));
-    let written = path.file_name().unwrap_or_default().to_string_lossy();
-    let text = arguments.kind.text().replace(&format!("{}.toml", arguments.kind.name()), &written);
-    if let Err(error) = create(&path, &text) {
-        let reason =
-            if error.kind() == ErrorKind::AlreadyExists { "it is there already".into() } else { error.to_string() };
-        return fail(&format!("cannot write {} ({reason}): choose another file with -o", path.display()), BAD_INPUT);
-    }
-    if let Err(message) = schema_beside(&path) {
-        return fail(&message, BAD_INPUT);
-    }
+pub fn new(arguments: &Arguments) -> Outcome {
+    let (name, text) = arguments.kind.template();
+    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(name));
+    let text = text.replace(name, &path.file_name().unwrap_or_default().to_string_lossy());
+    create_case(&path, &text)?;
     print_line(&format!("{0}: change it, then: enmm check {0}, enmm run {0}", path.display()));
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the schema beside a case if there is none yet.
-///
-/// # Errors
-/// The system refuses it.
-pub fn schema_beside(case: &Path) -> Result<(), String> {
-    let schema = case.with_file_name(SCHEMA);
-    match create(&schema, &format!("{:#}\n", enmm_io::schema())) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            Err(format!("cannot write {} ({error}): choose another folder", schema.display()))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Writes a file that is not there yet.
+/// Writes a case that is not there yet, and the schema beside it if there is none.
 ///
 /// # Errors
 /// The file is there already, or the system refuses it.
-pub fn create(path: &Path, text: &str) -> std::io::Result<()> {
+pub fn create_case(path: &Path, text: &str) -> Result<(), Failure> {
+    let is_there = |error: &std::io::Error| error.kind() == ErrorKind::AlreadyExists;
+    create(path, text)
+        .map_err(|error| if is_there(&error) { "it is there already".to_owned() } else { error.to_string() })
+        .map_err(|reason| format!("cannot write {} ({reason}): choose another file with -o", path.display()))
+        .or_fail(BAD_INPUT)?;
+    let schema = path.with_file_name(SCHEMA);
+    create(&schema, &format!("{:#}\n", enmm_io::schema()))
+        .or_else(|error| if is_there(&error) { Ok(()) } else { Err(error) })
+        .map_err(|error| format!("cannot write {} ({error}): choose another folder", schema.display()))
+        .or_fail(BAD_INPUT)
+}
+
+/// Writes a file that is not there yet.
+fn create(path: &Path, text: &str) -> std::io::Result<()> {
     let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
     file.write_all(text.as_bytes())
 }

@@ -18,15 +18,24 @@ const REDRAW: Duration = Duration::from_millis(100);
 const BAR: u64 = 1000;
 
 /// A bar of some length on a terminal; none elsewhere, or when it is to be quiet.
-fn terminal_bar(quiet: bool, length: u64, template: &str) -> Option<ProgressBar> {
+fn terminal_bar(quiet: bool, length: u64, template: &str) -> Bar {
     let style = || ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let terminal = std::io::stderr().is_terminal() && !quiet;
-    terminal.then(|| ProgressBar::new(length).with_style(style()))
+    Bar(terminal.then(|| ProgressBar::new(length).with_style(style())))
+}
+
+/// The bar of a command, removed from the screen when it is dropped.
+struct Bar(Option<ProgressBar>);
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.iter().for_each(ProgressBar::finish_and_clear);
+    }
 }
 
 /// Shows how a build and a run go.
 pub struct Screen {
-    bar: Option<ProgressBar>,
+    bar: Bar,
     quiet: bool,
     start: Instant,
     start_time: Option<f64>,
@@ -39,13 +48,6 @@ impl Screen {
     pub fn new(quiet: bool) -> Self {
         let bar = terminal_bar(quiet, BAR, "{wide_bar} {percent:>3} %  {msg}");
         Self { bar, quiet, start: Instant::now(), start_time: None, shown: None, stage: 0 }
-    }
-
-    /// Removes the bar.
-    pub fn close(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
     }
 
     fn line(&self, progress: &RunProgress) -> String {
@@ -67,7 +69,7 @@ impl Screen {
 impl Observer for Screen {
     fn build(&mut self, stage: BuildStage) {
         let line = format!("building the model: {}", stage.name());
-        match &self.bar {
+        match &self.bar.0 {
             Some(bar) => {
                 bar.set_position((BAR as f64 * stage.share()) as u64);
                 bar.set_message(line);
@@ -86,7 +88,7 @@ impl Observer for Screen {
         if self.quiet {
             return;
         }
-        let wait = if self.bar.is_some() { REDRAW } else { LINES };
+        let wait = if self.bar.0.is_some() { REDRAW } else { LINES };
         let due = self.shown.is_none_or(|shown| shown.elapsed() >= wait) || self.stage != progress.stage_number;
         if !due {
             return;
@@ -94,7 +96,7 @@ impl Observer for Screen {
         self.shown = Some(Instant::now());
         self.stage = progress.stage_number;
         let line = self.line(progress);
-        match &self.bar {
+        match &self.bar.0 {
             Some(bar) => {
                 let whole = progress.time + progress.time_expected.unwrap_or(progress.time_left);
                 let share = (BAR as f64 * progress.time / whole.max(f64::MIN_POSITIVE)) as u64;
@@ -117,7 +119,7 @@ impl Observer for Screen {
 impl Screen {
     /// Writes a line above the bar.
     fn tell(&self, line: &str) {
-        match &self.bar {
+        match &self.bar.0 {
             _ if self.quiet => {}
             Some(bar) => bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}"))),
             None => drop(writeln!(std::io::stderr(), "{line}")),
@@ -127,41 +129,35 @@ impl Screen {
 
 /// Shows on a terminal how a search for a factor of safety goes.
 pub struct Search {
-    bar: Option<ProgressBar>,
+    bar: Bar,
     start: Instant,
 }
 
 impl Search {
     /// A bar on a terminal; nothing elsewhere, or when it is to be quiet.
     pub fn new(quiet: bool) -> Self {
-        let bar = terminal_bar(quiet, 0, "{spinner} {bar:30} {msg}  ({elapsed})").inspect(|bar| {
+        let bar = terminal_bar(quiet, 0, "{spinner} {bar:30} {msg}  ({elapsed})");
+        if let Some(bar) = &bar.0 {
             bar.set_message("the slope comes to rest before the first trial");
             bar.enable_steady_tick(REDRAW);
-        });
+        }
         Self { bar, start: Instant::now() }
     }
 
     /// Prints by a function while the bar is away, and goes on after `done` of about `expected` trials.
     pub fn trial(&self, done: usize, expected: usize, print: impl FnOnce()) {
-        let Some(bar) = &self.bar else { return print() };
+        let Some(bar) = &self.bar.0 else { return print() };
         bar.suspend(print);
         let left = self.start.elapsed().as_secs_f64() * (expected - done.min(expected)) as f64 / done.max(1) as f64;
         bar.set_length(expected as u64);
         bar.set_position(done as u64);
         bar.set_message(format!("{done} of about {expected} trials, about {} left", clock(left)));
     }
-
-    /// Removes the bar.
-    pub fn close(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
 }
 
 /// Shows how an ensemble goes: a bar on a terminal, plain lines elsewhere.
 pub struct Count {
-    bar: Option<ProgressBar>,
+    bar: Bar,
     quiet: bool,
     shown: Mutex<Shown>,
 }
@@ -188,7 +184,7 @@ impl Count {
         let EnsembleProgress { stored, done, wanted, .. } = *progress;
         let is_an_end = done == stored || done == wanted;
         shown.text = line(progress);
-        match &self.bar {
+        match &self.bar.0 {
             Some(bar) => {
                 bar.set_length(wanted as u64);
                 bar.set_position(done as u64);
@@ -205,16 +201,9 @@ impl Count {
 
     /// A trial of a sample has ended.
     pub fn trial(&self, sample: usize, text: &str) {
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.bar.0 {
             let shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
             bar.set_message(format!("{}; sample {sample}: {text}", shown.text));
-        }
-    }
-
-    /// Removes the bar.
-    pub fn close(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
         }
     }
 }

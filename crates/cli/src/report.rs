@@ -8,7 +8,7 @@ use enmm_io::files::remove_if_there;
 use enmm_report::paper::{Converter, REPORT, REPORT_PDF, Records, write_report};
 use enmm_run::Folder;
 
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm report`.
 #[derive(Args)]
@@ -27,40 +27,27 @@ pub struct Arguments {
 }
 
 /// Writes the report of a folder of results into it.
-pub fn report(arguments: &Arguments) -> ExitCode {
+pub fn report(arguments: &Arguments) -> Outcome {
     let Arguments { directory, no_pdf, converter } = arguments;
-    let records = match Records::read(directory) {
-        Ok(records) => records,
-        Err(error) => return fail(&error, BAD_INPUT),
-    };
-    let refuse = |error| fail(&format!("cannot write the report ({error}): make the directory writable"), BAD_INPUT);
-    let _held = match Folder::open(directory, &[]) {
-        Ok(held) => held,
-        Err(error) => return refuse(error),
-    };
+    let records = Records::read(directory).or_fail(BAD_INPUT)?;
+    let refused = |error| format!("cannot write the report ({error}): make the directory writable");
+    let _held = Folder::open(directory, &[]).map_err(refused).or_fail(BAD_INPUT)?;
     let pdf = directory.join(REPORT_PDF);
     // A PDF of an earlier report would be taken for that of this one.
     let written = remove_if_there(&pdf).and_then(|()| write_report(directory, &records));
-    let page = match written {
-        Ok(page) => page,
-        Err(error) => return refuse(error),
-    };
+    let page = written.map_err(refused).or_fail(BAD_INPUT)?;
     print_line(&format!("{:<20} {}", "report", page.display()));
     if *no_pdf {
-        return ExitCode::SUCCESS;
+        return Ok(ExitCode::SUCCESS);
     }
     let Some(program) = converter.as_deref().map(Converter::named).or_else(Converter::find) else {
         print_line(&format!(
             "no PDF: no Chromium, Chrome, Edge, weasyprint or wkhtmltopdf is installed; print {REPORT} from a browser, \
              or name a program by --converter"
         ));
-        return ExitCode::SUCCESS;
+        return Ok(ExitCode::SUCCESS);
     };
-    match program.convert(&page, &pdf) {
-        Ok(()) => {
-            print_line(&format!("{:<20} {}", "PDF", pdf.display()));
-            ExitCode::SUCCESS
-        }
-        Err(error) => fail(&error, FAILED),
-    }
+    program.convert(&page, &pdf).or_fail(FAILED)?;
+    print_line(&format!("{:<20} {}", "PDF", pdf.display()));
+    Ok(ExitCode::SUCCESS)
 }

@@ -12,8 +12,7 @@ use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::case::CaseArguments;
 use crate::progress::Screen;
-use crate::told::Told;
-use crate::{BAD_INPUT, FAILED, INTERRUPTED, SLOPE_FAILED, fail, print_line, tell_line};
+use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SLOPE_FAILED, fail, print_line, tell_line};
 
 /// Set by the first interrupt.
 pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
@@ -42,32 +41,25 @@ pub struct Arguments {
 }
 
 /// Runs a case.
-pub fn run(arguments: &Arguments) -> ExitCode {
-    let loaded = match arguments.case.load() {
-        Ok(loaded) => loaded,
-        Err(error) => return fail(&error, BAD_INPUT),
-    };
-    if let Err(error) = ctrlc::set_handler(interrupt) {
-        return fail(&format!("cannot listen for interrupts ({error})"), FAILED);
-    }
+pub fn run(arguments: &Arguments) -> Outcome {
+    let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
+    listen()?;
     let options = RunOptions {
         directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
         resume: arguments.resume.clone(),
         threads: arguments.threads.map(usize::from),
         interrupt: Some(&INTERRUPT),
     };
-    if let Err(error) = check_folder(&options.directory, &loaded, arguments.force) {
-        return fail(&error, BAD_INPUT);
-    }
+    check_folder(&options.directory, &loaded, arguments.force).or_fail(BAD_INPUT)?;
     let mut screen = Screen::new(arguments.quiet);
     let outcome = enmm_run::run(&loaded, &options, &mut screen);
-    screen.close();
-    match outcome {
-        Ok(summary) => report(&summary, &options.directory, arguments.quiet),
-        Err(error @ (RunError::Output(_) | RunError::OutputAfter { .. })) => fail(&error, FAILED),
-        Err(error @ RunError::Case(_)) => Told::of(&loaded).refuse(&error, false, BAD_INPUT),
-        Err(error) => fail(&error, BAD_INPUT),
-    }
+    drop(screen);
+    let summary = outcome.map_err(|error| match error {
+        RunError::Output(_) | RunError::OutputAfter { .. } => Failure::new(error, FAILED),
+        RunError::Case(_) => Failure::new(error, BAD_INPUT).on(&loaded),
+        _ => Failure::new(error, BAD_INPUT),
+    })?;
+    Ok(report(&summary, &options.directory, arguments.quiet))
 }
 
 /// Refuses a folder with results of another case, unless they may be replaced.
@@ -78,11 +70,21 @@ pub fn check_folder(directory: &Path, loaded: &LoadedCase, force: bool) -> std::
     if force { Ok(()) } else { enmm_run::check_owner(directory, loaded.source.file()) }
 }
 
-/// The first interrupt requests a checkpoint, the second ends the program at once.
-pub fn interrupt() {
-    if INTERRUPT.swap(true, Ordering::Relaxed) {
-        std::process::exit(i32::from(INTERRUPTED));
-    }
+/// From now on the first interrupt requests a checkpoint, and the second ends the program at once.
+pub fn listen() -> Result<(), Failure> {
+    let interrupt = || {
+        if INTERRUPT.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+    };
+    ctrlc::set_handler(interrupt).map_err(|error| format!("cannot listen for interrupts ({error})")).or_fail(FAILED)
+}
+
+/// Prints a record that was written into the folder of the results.
+pub fn print_record(directory: &Path, name: &str) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(directory.join(name));
+    print_line(text.map_err(|error| format!("cannot read {name} again ({error})")).or_fail(FAILED)?.trim_end());
+    Ok(())
 }
 
 /// The name of the case file without its extension, in the current directory.

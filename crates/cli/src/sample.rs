@@ -17,9 +17,8 @@ use serde_json::{Map, Value as Json, json};
 use crate::case::CaseArguments;
 use crate::fos::trial_line;
 use crate::progress::Count;
-use crate::run::{INTERRUPT, check_folder, directory_of, interrupt};
-use crate::told::Told;
-use crate::{BAD_INPUT, FAILED, INTERRUPTED, fail, listed, print_line, tell_line};
+use crate::run::{INTERRUPT, check_folder, directory_of, listen as listen_for_interrupts, print_record};
+use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, listed, print_line, tell_line};
 
 /// Exit status of a panic.
 const PANIC: i32 = 101;
@@ -79,36 +78,25 @@ impl Arguments {
         let Self { low, high, tolerance, least_area, .. } = *self;
         SearchOptions { low, high, tolerance, least_area }
     }
-
-    /// Refuses options with which no search can be made.
-    fn check(&self) -> Result<(), String> {
-        self.search().fos().check()
-    }
 }
 
 /// Works out an ensemble.
-pub fn sample(arguments: &Arguments) -> ExitCode {
-    if let Err(message) = arguments.check() {
-        return refuse(arguments, &message, BAD_INPUT);
-    }
-    let loaded = match load(arguments) {
-        Ok(loaded) => loaded,
-        Err(error) => return refuse(arguments, &error, BAD_INPUT),
-    };
+pub fn sample(arguments: &Arguments) -> Outcome {
+    find(arguments).map_err(|failure| failure.json(arguments.json))
+}
+
+fn find(arguments: &Arguments) -> Outcome {
+    // Options with which no search can be made are refused before any sample.
+    arguments.search().fos().check().or_fail(BAD_INPUT)?;
+    let loaded = load(arguments).or_fail(BAD_INPUT)?;
     if let Some(hash) = &arguments.sample_of {
-        return work_out(arguments, &loaded, hash);
+        return Ok(work_out(arguments, &loaded, hash));
     }
-    if let Err(error) = ctrlc::set_handler(interrupt) {
-        return refuse(arguments, &format!("cannot listen for interrupts ({error})"), FAILED);
-    }
-    let program = match std::env::current_exe() {
-        Ok(program) => program,
-        Err(error) => return refuse(arguments, &format!("cannot find this program again ({error})"), FAILED),
-    };
+    listen_for_interrupts()?;
+    let program = std::env::current_exe();
+    let program = program.map_err(|error| format!("cannot find this program again ({error})")).or_fail(FAILED)?;
     let directory = arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path));
-    if let Err(error) = check_folder(&directory, &loaded, arguments.force) {
-        return refuse(arguments, &error, BAD_INPUT);
-    }
+    check_folder(&directory, &loaded, arguments.force).or_fail(BAD_INPUT)?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let options = EnsembleOptions {
         store: arguments.store.clone().unwrap_or_else(|| directory.join(enmm_run::STORE)),
@@ -121,22 +109,15 @@ pub fn sample(arguments: &Arguments) -> ExitCode {
     let screen = Count::new(arguments.json);
     let ask = |what: &Ask| ask(&mut command(&program, arguments, &loaded, what), what, &screen);
     let found = ensemble(&loaded, &options, ask, &mut |progress| screen.tell(progress));
-    screen.close();
-    match found {
-        Ok(found) => report(arguments, &found, &options),
-        Err(error) => {
-            let status = match error {
-                EnsembleError::Case(_) | EnsembleError::Directory(_) => BAD_INPUT,
-                EnsembleError::Interrupted { .. } => INTERRUPTED,
-                _ => FAILED,
-            };
-            let told = match error {
-                EnsembleError::Case(_) | EnsembleError::NoAnswer { .. } => Told::of(&loaded),
-                _ => Told::default(),
-            };
-            told.refuse(&error, arguments.json, status)
-        }
-    }
+    drop(screen);
+    let found = found.map_err(|error| match error {
+        EnsembleError::Case(_) => Failure::new(error, BAD_INPUT).on(&loaded),
+        EnsembleError::NoAnswer { .. } => Failure::new(error, FAILED).on(&loaded),
+        EnsembleError::Directory(_) => Failure::new(error, BAD_INPUT),
+        EnsembleError::Interrupted { .. } => Failure::new(error, INTERRUPTED),
+        _ => Failure::new(error, FAILED),
+    })?;
+    report(arguments, &found, &options)
 }
 
 /// The case; of an ensemble with a look at the middle of its random values, so that wrong keys are found at once.
@@ -151,13 +132,6 @@ fn load(arguments: &Arguments) -> Result<LoadedCase, enmm_io::CaseError> {
         arguments.case.load_with(&medians)?;
     }
     Ok(loaded)
-}
-
-fn refuse(arguments: &Arguments, message: &impl std::fmt::Display, status: u8) -> ExitCode {
-    if arguments.json {
-        print_line(&json!({ "error": message.to_string() }).to_string());
-    }
-    fail(message, status)
 }
 
 /// The output of a sample by its name in a case.
@@ -245,13 +219,10 @@ fn work_out(arguments: &Arguments, loaded: &LoadedCase, hash: &str) -> ExitCode 
     ExitCode::SUCCESS
 }
 
-fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptions) -> ExitCode {
+fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptions) -> Outcome {
     if arguments.json {
-        match std::fs::read_to_string(options.directory.join("ensemble.json")) {
-            Ok(text) => print_line(text.trim_end()),
-            Err(error) => return refuse(arguments, &format!("cannot read ensemble.json again ({error})"), FAILED),
-        }
-        return ExitCode::SUCCESS;
+        print_record(&options.directory, "ensemble.json")?;
+        return Ok(ExitCode::SUCCESS);
     }
     print_line(&table(found, options));
     let n = found.rows.len();
@@ -259,21 +230,14 @@ fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptio
         let shown = list.iter().map(|(k, message)| format!("{k} ({message})")).collect::<Vec<_>>();
         listed(shown.into_iter())
     };
-    if !found.failed.is_empty() {
-        tell_line(&format!(
-            "warning: {} of {n} samples have no answer and count neither as failed nor as stable slopes: {}",
-            found.failed.len(),
-            named(&found.failed)
-        ));
+    let warnings = [
+        (&found.failed, "samples have no answer and count neither as failed nor as stable slopes"),
+        (&found.doubtful, "factors are above the bound of limit analysis"),
+    ];
+    for (list, what) in warnings.into_iter().filter(|(list, _)| !list.is_empty()) {
+        tell_line(&format!("warning: {} of {n} {what}: {}", list.len(), named(list)));
     }
-    if !found.doubtful.is_empty() {
-        tell_line(&format!(
-            "warning: {} of {n} factors are above the bound of limit analysis: {}",
-            found.doubtful.len(),
-            named(&found.doubtful)
-        ));
-    }
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Results, as lines of a name and a text.

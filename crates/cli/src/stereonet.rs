@@ -9,7 +9,7 @@ use enmm_run::{NetOptions, Projection, check_output, stereonet as net_of};
 use enmm_stability::kinematics::{Limits, Plane};
 
 use crate::case::CaseArguments;
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm stereonet`.
 #[derive(Args)]
@@ -57,27 +57,19 @@ fn limit(text: &str) -> Result<f64, String> {
 }
 
 /// Draws the stereonet of a case and prints what it shows.
-pub fn stereonet(arguments: &Arguments) -> ExitCode {
-    let loaded = match arguments.case.load() {
-        Ok(loaded) => loaded,
-        Err(error) => return fail(&error, BAD_INPUT),
-    };
+pub fn stereonet(arguments: &Arguments) -> Outcome {
+    let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
     let options = NetOptions {
         face: arguments.face,
         limits: Limits { sliding: arguments.sliding_limit, toppling: arguments.toppling_limit },
         projection: if arguments.equal_angle { Projection::EqualAngle } else { Projection::EqualArea },
     };
-    let net = match net_of(&loaded, &options) {
-        Ok(net) => net,
-        Err(message) => return fail(&format!("{}: {message}", loaded.source.file()), BAD_INPUT),
-    };
+    let net = net_of(&loaded, &options).map_err(|message| format!("{}: {message}", loaded.source.file()));
+    let net = net.or_fail(BAD_INPUT)?;
     let path = arguments.output.clone().unwrap_or_else(|| arguments.case.path.with_extension("stereonet.svg"));
-    if let Err(error) = check_output(&path, loaded.source.inputs()) {
-        return fail(&format!("cannot write the picture ({error}): choose another file with -o"), BAD_INPUT);
-    }
-    if let Err(error) = write_atomic(&path, net.picture().svg().as_bytes()) {
-        return fail(&format!("cannot write the picture ({error}): choose another file with -o"), FAILED);
-    }
+    let unwritten = |error| format!("cannot write the picture ({error}): choose another file with -o");
+    check_output(&path, loaded.source.inputs()).map_err(unwritten).or_fail(BAD_INPUT)?;
+    write_atomic(&path, net.picture().svg().as_bytes()).map_err(unwritten).or_fail(FAILED)?;
     let mut lines = vec![format!("{:<21} {:.1}°/{:05.1}°", "face", net.face.dip, net.face.direction)];
     for (set, remark) in net.sets.iter().zip(&net.remarks) {
         let plane = format!("{:.1}°/{:05.1}°, φ {:.1}°", set.plane.dip, set.plane.direction, set.friction);
@@ -87,5 +79,5 @@ pub fn stereonet(arguments: &Arguments) -> ExitCode {
     lines.extend(net.notes.iter().map(|note| format!("note: {note}")));
     lines.push(format!("{:<21} {}", "picture", path.display()));
     print_line(&lines.join("\n"));
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
 }

@@ -13,8 +13,9 @@ use enmm_run::make_place;
 use enmm_verification::{
     Parameter, Problem, ProblemRecord, Record, Request, Solved, choose, problems, report, solve_all, text, write_cases,
 };
+use serde_json::json;
 
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line};
 
 /// A problem does not pass.
 const MISSED: u8 = 1;
@@ -67,25 +68,18 @@ impl Arguments {
 }
 
 /// Runs the chosen problems, two at a time, and prints their tables in the order of the manual.
-pub fn verify(arguments: &Arguments) -> ExitCode {
-    let jobs = match choose(problems::ALL, &arguments.request()) {
-        Ok(jobs) => jobs,
-        Err(trouble) => return fail(&trouble, BAD_INPUT),
-    };
+pub fn verify(arguments: &Arguments) -> Outcome {
+    let jobs = choose(problems::ALL, &arguments.request()).or_fail(BAD_INPUT)?;
     if arguments.list {
         print_line(&list(&jobs.iter().map(|job| job.problem).collect::<Vec<_>>(), arguments.json));
-        return ExitCode::SUCCESS;
+        return Ok(ExitCode::SUCCESS);
     }
     let places = [(&arguments.write, &[][..]), (&arguments.output, &[report::DOCUMENT, report::RECORD][..])];
     for (directory, files) in places.into_iter().filter_map(|(place, files)| Some((place.as_ref()?, files))) {
-        if let Err(error) = make_place(directory, files) {
-            return fail(&error, BAD_INPUT);
-        }
+        make_place(directory, files).or_fail(BAD_INPUT)?;
     }
-    if let Some(directory) = &arguments.output
-        && let Err(error) = make_place(&directory.join(report::PLOTS), &[])
-    {
-        return fail(&error, BAD_INPUT);
+    if let Some(directory) = &arguments.output {
+        make_place(&directory.join(report::PLOTS), &[]).or_fail(BAD_INPUT)?;
     }
     let tables = InOrder::default();
     let solved = solve_all(jobs, THREADS, |place, solved| {
@@ -94,11 +88,9 @@ pub fn verify(arguments: &Arguments) -> ExitCode {
         }
     });
     let record = Record::of(&solved);
-    print_line(&if arguments.json { json(&record) } else { closing_line(&record) });
-    if let Err(error) = write(arguments, &record, &solved) {
-        return fail(&error, FAILED);
-    }
-    if record.passed { ExitCode::SUCCESS } else { ExitCode::from(MISSED) }
+    print_line(&if arguments.json { report::json(&record).trim_end().to_owned() } else { closing_line(&record) });
+    write(arguments, &record, &solved).or_fail(FAILED)?;
+    Ok(if record.passed { ExitCode::SUCCESS } else { ExitCode::from(MISSED) })
 }
 
 /// Prints what comes in any order by its places, as soon as all before it are there.
@@ -137,10 +129,6 @@ fn write(arguments: &Arguments, record: &Record, solved: &[Solved]) -> std::io::
     Ok(())
 }
 
-fn json(record: &Record) -> String {
-    report::json(record).trim_end().to_owned()
-}
-
 fn closing_line(record: &Record) -> String {
     let failed: Vec<&str> = record.problems.iter().filter(|p| !p.passed).map(|p| p.id.as_str()).collect();
     let passed = record.problems.len() - failed.len();
@@ -151,11 +139,12 @@ fn closing_line(record: &Record) -> String {
 fn list(problems: &[&Problem], json: bool) -> String {
     if json {
         let one = |p: &&Problem| {
-            let parameters: Vec<_> = p.parameters.iter().map(parameter_json).collect();
-            serde_json::json!({ "id": p.id, "title": p.title, "source": p.source, "quick": p.quick,
+            let parameter = |p: &Parameter| json!({ "name": p.name, "unit": p.unit, "default": p.default, "range": p.range, "doc": p.doc });
+            let parameters: Vec<_> = p.parameters.iter().map(parameter).collect();
+            json!({ "id": p.id, "title": p.title, "source": p.source, "quick": p.quick,
                                 "implicit": p.implicit, "parameters": parameters })
         };
-        return format!("{:#}", serde_json::json!({ "problems": problems.iter().map(one).collect::<Vec<_>>() }));
+        return format!("{:#}", json!({ "problems": problems.iter().map(one).collect::<Vec<_>>() }));
     }
     let mut lines = Vec::new();
     for problem in problems {
@@ -166,10 +155,6 @@ fn list(problems: &[&Problem], json: bool) -> String {
         lines.extend(problem.parameters.iter().map(parameter_line));
     }
     lines.join("\n")
-}
-
-fn parameter_json(p: &Parameter) -> serde_json::Value {
-    serde_json::json!({ "name": p.name, "unit": p.unit, "default": p.default, "range": p.range, "doc": p.doc })
 }
 
 fn parameter_line(p: &Parameter) -> String {

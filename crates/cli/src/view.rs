@@ -1,12 +1,13 @@
 //! `enmm view`: shows the film of a run in a browser while the run goes on.
 
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
 use enmm_report::{FILM, PAGE, Server, write_page};
 
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::{BAD_INPUT, FAILED, Failure, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm view`.
 #[derive(Args)]
@@ -22,28 +23,28 @@ pub struct Arguments {
 }
 
 /// Serves the page of a run to browsers on this machine, until it is interrupted.
-pub fn view(arguments: &Arguments) -> ExitCode {
+pub fn view(arguments: &Arguments) -> Outcome {
     let directory = &arguments.directory;
     if !directory.is_dir() {
         let place = directory.display();
-        return fail(&format!("{place} is no directory: name that of the results, as `enmm run -o` does"), BAD_INPUT);
+        let message = format!("{place} is no directory: name that of the results, as `enmm run -o` does");
+        return Err(Failure::new(message, BAD_INPUT));
     }
     if arguments.page {
-        return match write_page(&directory.join(FILM), &directory.join(PAGE)) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => fail(&error, BAD_INPUT),
-        };
+        let written = write_page(&directory.join(FILM), &directory.join(PAGE));
+        return written.map(|()| ExitCode::SUCCESS).or_fail(BAD_INPUT);
     }
-    let server = match Server::open(&directory.join(FILM), arguments.port) {
-        Ok(server) => server,
-        Err(error) => return fail(&format!("cannot listen at port {} ({error})", arguments.port), FAILED),
-    };
-    let outcome = server.address().and_then(|address| {
+    serve(Server::open(&directory.join(FILM), arguments.port), arguments.port, || Ok(()))
+}
+
+/// Serves browsers on this machine until it is interrupted; `begin` is called when they can come.
+pub fn serve(server: io::Result<Server>, port: u16, begin: impl FnOnce() -> io::Result<()>) -> Outcome {
+    let server = server.map_err(|error| format!("cannot listen at port {port} ({error})")).or_fail(FAILED)?;
+    let ended = server.address().and_then(|address| {
         print_line(&format!("open http://{address}/ in a browser; Ctrl-C ends this"));
+        begin()?;
         server.run()
     });
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&format!("cannot serve any more ({error})"), FAILED),
-    }
+    let ended = ended.map_err(|error| format!("cannot serve any more ({error})"));
+    ended.map(|()| ExitCode::SUCCESS).or_fail(FAILED)
 }

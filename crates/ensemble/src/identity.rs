@@ -38,13 +38,9 @@ pub fn sample_key(identity: &Identity, keys: &[String], values: &[Value]) -> Str
         };
         line("value", key, value);
     }
-    hexadecimal(&Sha256::digest(text.as_bytes()))
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn bits(value: f64) -> String {
     format!("{:016x}", value.to_bits())
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

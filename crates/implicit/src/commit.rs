@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use enmm::geometry::Vector;
 use enmm::internals::contact::ContactState;
 use enmm::internals::state::{Ledger, State, Workspace};
 use enmm::internals::step::{
@@ -10,6 +11,7 @@ use enmm::internals::step::{
 
 use super::balance::norm;
 use super::choices::{Implicit, Rule};
+use super::consistent::push_mass;
 use super::motion::kinetic_energy;
 use super::step::{ImplicitStep, Inertia};
 
@@ -72,9 +74,11 @@ impl ImplicitStep<'_> {
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
         works.damping = (inertia.end - 0.5) * numerical;
         if inertia.rests {
-            self.buffers.field.clone_from(&self.buffers.moved);
-            self.mass_times_field(implicit);
-            let buffers = &self.buffers;
+            let buffers = &mut *self.buffers;
+            buffers.residual.fill(Vector::zeros());
+            for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
+                push_mass(mass, *ids, &buffers.moved, &mut buffers.residual);
+            }
             let spent: f64 = buffers.residual.iter().zip(&buffers.moved).map(|(p, u)| p.dot(u)).sum();
             works.damping += inertia.factor * spent;
         }
@@ -121,7 +125,10 @@ impl ImplicitStep<'_> {
     /// Energies and the unbalanced ratio at the start of this sub-step.
     pub(super) fn implicit_report(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let model = self.model;
-        let unbalanced = self.implicit_unbalanced();
+        // The forces out of balance over the applied ones, by the true forces (Eq. 19).
+        self.start_balance();
+        let applied = norm(&self.buffers.start.applied).max(norm(&self.state.stage_force));
+        let unbalanced = unbalanced(norm(&self.buffers.residual), applied);
         let (state, workspace) = (&*self.state, &*self.workspace);
         let mut ledger = state.ledger;
         ledger.kinetic = kinetic_energy(model, implicit, &workspace.mass_matrix, &state.velocity);
@@ -143,13 +150,5 @@ impl ImplicitStep<'_> {
             penetration_max: workspace.contacts.iter().map(|c| c.penetration()).fold(0.0, f64::max),
             speed_max: speed_max(model, state),
         }
-    }
-
-    /// ‖forces out of balance‖ over ‖applied force‖ at the start of the sub-step, by the true forces (Eq. 19).
-    fn implicit_unbalanced(&mut self) -> f64 {
-        self.start_balance();
-        let (state, buffers) = (&*self.state, &self.buffers);
-        let applied = norm(&buffers.start.applied).max(norm(&state.stage_force));
-        unbalanced(norm(&buffers.residual), applied)
     }
 }

@@ -121,25 +121,21 @@ fn taken(workspace: &mut Workspace) -> Box<ImplicitBuffers> {
 impl ImplicitStep<'_> {
     fn inertia<'a>(&mut self, implicit: &'a Implicit, dt: f64) -> Inertia<'a> {
         let (factor, end, rests) = match (self.regime, implicit.rule) {
-            (Regime::Static { .. }, _) => (self.static_inertia(dt), 1.0, true),
+            // That of a step from rest over a time that grows while sub-steps settle easily and is cut when one does not
+            // (Eq. 72).
+            (Regime::Static { .. }, _) => {
+                let stretch = &mut self.state.static_stretch;
+                if *stretch == 0.0 {
+                    *stretch = 1.0;
+                }
+                (2.0 / (*stretch * dt).powi(2), 1.0, true)
+            }
             (Regime::Dynamic { .. }, Rule::Constant) => (2.0 / (dt * dt), 1.0, false),
             (Regime::Dynamic { .. }, Rule::Trapezoidal) => (4.0 / (dt * dt), 0.5, false),
         };
         Inertia { element_mass: &implicit.element_mass, dt, factor, end, rests }
     }
 
-    /// Inertia over displacement (1/s²) of a static sub-step (Eq. 72): that of a step from rest over a time that grows
-    /// while sub-steps settle easily and is cut when one does not.
-    fn static_inertia(&mut self, dt: f64) -> f64 {
-        let stretch = &mut self.state.static_stretch;
-        if *stretch == 0.0 {
-            *stretch = 1.0;
-        }
-        2.0 / (*stretch * dt).powi(2)
-    }
-}
-
-impl ImplicitStep<'_> {
     /// Covers `dt` (s) by sub-steps: one that does not settle is cut, and the rest follows.
     fn implicit_interval(&mut self, implicit: &Implicit, dt: f64) -> StepReport {
         let (mut left, mut part, mut cuts) = (dt, dt, 0);

@@ -6,7 +6,6 @@ use enmm::internals::mechanics::MassMatrix;
 use enmm::internals::state::{Model, State};
 
 use super::choices::Implicit;
-use super::consistent::push_mass;
 use super::step::{ImplicitStep, Inertia};
 
 /// Kinetic energy (J/m) by the consistent mass of all blocks that can move.
@@ -100,15 +99,6 @@ impl ImplicitStep<'_> {
             for axis in 0..2 {
                 state.velocity[i][axis] = if buffers.held[2 * i + axis] { 0.0 } else { damped[axis] };
             }
-        }
-    }
-
-    /// M times a cover field, into the residual.
-    pub(super) fn mass_times_field(&mut self, implicit: &Implicit) {
-        let buffers = &mut self.buffers;
-        buffers.residual.fill(Vector::zeros());
-        for (mass, ids) in implicit.element_mass.iter().zip(&self.model.covers.element_covers) {
-            push_mass(mass, *ids, &buffers.field, &mut buffers.residual);
         }
     }
 }

@@ -73,7 +73,10 @@ impl ImplicitStep<'_> {
                 break false;
             }
             if factor_due {
-                if !self.refactor(inertia) {
+                let clock = Instant::now();
+                self.singular = self.implicit_factorise(inertia).is_err();
+                self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
+                if self.singular {
                     break false;
                 }
                 factors += 1;
@@ -86,13 +89,13 @@ impl ImplicitStep<'_> {
         let enough = if inertia.rests { ENOUGH_STATIC } else { ENOUGH };
         let taken = settled || balance.residual <= enough * balance.scale;
         self.state.counters.unsettled += u64::from(taken && !settled);
-        let settled = taken;
         self.count_implicit(inertia.dt, solutions);
         if inertia.rests {
             let balanced = balance.residual <= EASY_STATIC * balance.scale;
-            self.renew_stretch(settled, solutions, balanced);
+            self.renew_stretch(taken, solutions, balanced);
         }
-        settled && self.largest_move() <= implicit.displacement_max
+        let farthest = self.buffers.moved.iter().map(|u| u.norm_squared()).fold(0.0, f64::max).sqrt();
+        taken && farthest <= implicit.displacement_max
     }
 
     /// The time for which inertia counts in the next static sub-step: cut when this one has not settled, longer when it
@@ -199,15 +202,6 @@ impl ImplicitStep<'_> {
         }
     }
 
-    /// A new factor for the contacts in their new states; false when the matrix is not positive definite.
-    fn refactor(&mut self, inertia: &Inertia) -> bool {
-        let clock = Instant::now();
-        let done = self.implicit_factorise(inertia).is_ok();
-        self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
-        self.singular = !done;
-        done
-    }
-
     /// Solves for the forces out of balance.
     pub(super) fn solve(&mut self) {
         let clock = Instant::now();
@@ -217,10 +211,6 @@ impl ImplicitStep<'_> {
         }
         buffers.matrix.solve(&mut buffers.unknowns);
         self.workspace.seconds.sweep += clock.elapsed().as_secs_f64();
-    }
-
-    fn largest_move(&self) -> f64 {
-        self.buffers.moved.iter().map(|u| u.norm_squared()).fold(0.0, f64::max).sqrt()
     }
 
     fn count_implicit(&mut self, dt: f64, solutions: u32) {

@@ -5,40 +5,11 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Arithmetic, Kernel, LANES, Lanes, Pair, Places, Slot, Table, Values};
 
-/// Proof that the processor has AVX2: only [`run`] makes one.
-#[derive(Clone, Copy)]
-pub struct Avx2(());
-
-/// Eight values; only an [`Avx2`] makes them, so that one at hand proves AVX2 as well.
-#[derive(Clone, Copy)]
-pub struct Registers([__m256d; 2]);
-
-/// Runs a kernel with lanes of this kind.
-///
-/// # Safety
-/// The processor must have AVX2.
-#[target_feature(enable = "avx2")]
-pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run(Avx2(()))
-}
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $intrinsic:ident) => {
-        impl $trait for Registers {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: registers at hand prove AVX2.
-                Self(unsafe { [$intrinsic(self.0[0], other.0[0]), $intrinsic(self.0[1], other.0[1])] })
-            }
-        }
-    };
-}
-
-operator!(Add, add, _mm256_add_pd);
-operator!(Sub, sub, _mm256_sub_pd);
-operator!(Mul, mul, _mm256_mul_pd);
-operator!(Div, div, _mm256_div_pd);
+registers!(
+    Avx2, Registers [__m256d; 0 1] by "avx2":
+    _mm256_set1_pd _mm256_loadu_pd _mm256_storeu_pd _mm256_sqrt_pd _mm256_max_pd _mm256_min_pd
+    _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd
+);
 
 impl Neg for Registers {
     type Output = Self;
@@ -49,13 +20,6 @@ impl Neg for Registers {
             let sign = _mm256_set1_pd(-0.0);
             [_mm256_xor_pd(self.0[0], sign), _mm256_xor_pd(self.0[1], sign)]
         })
-    }
-}
-
-impl Arithmetic for Registers {
-    #[inline(always)]
-    fn splat(self, value: f64) -> Self {
-        Avx2(()).splat(value)
     }
 }
 
@@ -163,95 +127,38 @@ fn balance(_: Avx2, before: __m256d, second: __m256d, third: __m256d) -> __m256d
     unsafe { _mm256_sub_pd(_mm256_permute2f128_pd::<0x21>(before, second), _mm256_add_pd(second, third)) }
 }
 
-impl Values for Avx2 {
-    type F = Registers;
-
-    #[inline(always)]
-    fn splat(self, value: f64) -> Registers {
-        // SAFETY: the token proves AVX2.
-        Registers(unsafe { [_mm256_set1_pd(value); 2] })
+/// Values where others are above a limit; zero elsewhere.
+#[inline(always)]
+fn keep_above(_: Avx2, values: Registers, others: Registers, limit: Registers) -> Registers {
+    // SAFETY: the token proves AVX2.
+    unsafe {
+        let low = _mm256_cmp_pd::<_CMP_GT_OQ>(others.0[0], limit.0[0]);
+        let high = _mm256_cmp_pd::<_CMP_GT_OQ>(others.0[1], limit.0[1]);
+        Registers([_mm256_and_pd(low, values.0[0]), _mm256_and_pd(high, values.0[1])])
     }
+}
 
-    #[inline(always)]
-    fn load(self, values: &[f64; LANES]) -> Registers {
-        let at = values.as_ptr();
-        // SAFETY: the token proves AVX2; the array holds eight values.
-        Registers(unsafe { [_mm256_loadu_pd(at), _mm256_loadu_pd(at.add(4))] })
+/// Lanes in which the first is at most the second, as bits.
+#[inline(always)]
+fn at_most(_: Avx2, a: Registers, b: Registers) -> u8 {
+    // SAFETY: the token proves AVX2.
+    unsafe {
+        let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[0], b.0[0]));
+        let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[1], b.0[1]));
+        (low | high << 4) as u8
     }
+}
 
-    #[inline(always)]
-    fn store(self, lanes: Registers, out: &mut [f64; LANES]) {
-        let at = out.as_mut_ptr();
-        // SAFETY: the token proves AVX2; the array holds eight values.
-        unsafe {
-            _mm256_storeu_pd(at, lanes.0[0]);
-            _mm256_storeu_pd(at.add(4), lanes.0[1]);
-        }
-    }
-
-    #[inline(always)]
-    fn max(self, a: Registers, b: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        Registers(unsafe { [_mm256_max_pd(a.0[0], b.0[0]), _mm256_max_pd(a.0[1], b.0[1])] })
-    }
-
-    #[inline(always)]
-    fn min(self, a: Registers, b: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        Registers(unsafe { [_mm256_min_pd(a.0[0], b.0[0]), _mm256_min_pd(a.0[1], b.0[1])] })
-    }
-
-    #[inline(always)]
-    fn keep_above(self, values: Registers, others: Registers, limit: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        unsafe {
-            let low = _mm256_cmp_pd::<_CMP_GT_OQ>(others.0[0], limit.0[0]);
-            let high = _mm256_cmp_pd::<_CMP_GT_OQ>(others.0[1], limit.0[1]);
-            Registers([_mm256_and_pd(low, values.0[0]), _mm256_and_pd(high, values.0[1])])
-        }
-    }
-
-    #[inline(always)]
-    fn at_most(self, a: Registers, b: Registers) -> u8 {
-        // SAFETY: the token proves AVX2.
-        unsafe {
-            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[0], b.0[0]));
-            let high = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0[1], b.0[1]));
-            (low | high << 4) as u8
-        }
-    }
-
-    #[inline(always)]
-    fn sqrt(self, lanes: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        Registers(unsafe { [_mm256_sqrt_pd(lanes.0[0]), _mm256_sqrt_pd(lanes.0[1])] })
-    }
-
-    #[inline(always)]
-    fn select(self, bits: u8, a: Registers, b: Registers) -> Registers {
-        // SAFETY: the token proves AVX2.
-        unsafe {
-            let bits = _mm256_set1_epi64x(i64::from(bits));
-            let (low, high) = (_mm256_setr_epi64x(1, 2, 4, 8), _mm256_setr_epi64x(16, 32, 64, 128));
-            let low = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, low), low));
-            let high = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, high), high));
-            Registers([_mm256_blendv_pd(b.0[0], a.0[0], low), _mm256_blendv_pd(b.0[1], a.0[1], high)])
-        }
-    }
-
-    #[inline(always)]
-    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Registers; 2] {
-        // SAFETY: each address is that of a pair, two f64 in a row.
-        unsafe { eight(self, at.of(pairs)) }
-    }
-
-    #[inline(always)]
-    fn scatter_to(self, lanes: [Registers; 2], pairs: &mut [Pair], at: &Places) {
-        let (at, parts) = (at.of_mut(pairs), apart(self, lanes));
-        for k in (0..LANES).rev() {
-            // SAFETY: the token proves AVX2; the address is that of a pair, two f64 in a row.
-            unsafe { _mm_storeu_pd(at[k], parts[k]) }
-        }
+/// The first in lanes with a bit, the second elsewhere.
+#[inline(always)]
+fn select(_: Avx2, bits: u8, a: Registers, b: Registers) -> Registers {
+    // SAFETY: the token proves AVX2.
+    unsafe {
+        let bits = _mm256_set1_epi64x(i64::from(bits));
+        let (low, high) = (_mm256_setr_epi64x(1, 2, 4, 8), _mm256_setr_epi64x(16, 32, 64, 128));
+        let low = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, low), low));
+        let high = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, high), high));
+        Registers([_mm256_blendv_pd(b.0[0], a.0[0], low), _mm256_blendv_pd(b.0[1], a.0[1], high)])
     }
 }
 
@@ -296,21 +203,7 @@ impl Lanes for Avx2 {
         }
     }
 
-    #[inline(always)]
-    fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Registers; 2] {
-        // SAFETY: each address is that of a pair, two f64 in a row.
-        unsafe { eight(self, table.addresses(slots)) }
-    }
-
-    #[inline(always)]
-    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Registers; 2]) {
-        let parts = apart(self, lanes);
-        for k in 0..LANES {
-            let at = table.values_mut(slots[k]);
-            // SAFETY: the token proves AVX2; the address is that of a pair, two f64 in a row.
-            unsafe { _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), parts[k])) }
-        }
-    }
+    registers!(Registers by slots);
 
     #[inline(always)]
     fn gather_triangles(self, table: &Table, [first, third]: [Slot; 2]) -> [[Registers; 2]; 2] {

@@ -5,40 +5,11 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Arithmetic, Kernel, LANES, Lanes, Pair, Places, Slot, Table, Values};
 
-/// Proof that the processor has AVX-512F: only [`run`] makes one.
-#[derive(Clone, Copy)]
-pub struct Avx512(());
-
-/// Eight values; only an [`Avx512`] makes them, so that one at hand proves AVX-512F as well.
-#[derive(Clone, Copy)]
-pub struct Register(__m512d);
-
-/// Runs a kernel with lanes of this kind.
-///
-/// # Safety
-/// The processor must have AVX-512F.
-#[target_feature(enable = "avx512f")]
-pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run(Avx512(()))
-}
-
-macro_rules! operator {
-    ($trait:ident, $method:ident, $intrinsic:ident) => {
-        impl $trait for Register {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: a register at hand proves AVX-512F.
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    };
-}
-
-operator!(Add, add, _mm512_add_pd);
-operator!(Sub, sub, _mm512_sub_pd);
-operator!(Mul, mul, _mm512_mul_pd);
-operator!(Div, div, _mm512_div_pd);
+registers!(
+    Avx512, Register [__m512d; 0] by "avx512f":
+    _mm512_set1_pd _mm512_loadu_pd _mm512_storeu_pd _mm512_sqrt_pd _mm512_max_pd _mm512_min_pd
+    _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd
+);
 
 impl Neg for Register {
     type Output = Self;
@@ -47,15 +18,8 @@ impl Neg for Register {
         // SAFETY: a register at hand proves AVX-512F.
         Self(unsafe {
             let sign = _mm512_set1_epi64(i64::MIN);
-            _mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(self.0), sign))
+            [_mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(self.0[0]), sign))]
         })
-    }
-}
-
-impl Arithmetic for Register {
-    #[inline(always)]
-    fn splat(self, value: f64) -> Self {
-        Avx512(()).splat(value)
     }
 }
 
@@ -66,7 +30,7 @@ fn split(_: Avx512, low: __m512d, high: __m512d) -> [Register; 2] {
     unsafe {
         let x = _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14);
         let y = _mm512_setr_epi64(1, 3, 5, 7, 9, 11, 13, 15);
-        [Register(_mm512_permutex2var_pd(low, x, high)), Register(_mm512_permutex2var_pd(low, y, high))]
+        [Register([_mm512_permutex2var_pd(low, x, high)]), Register([_mm512_permutex2var_pd(low, y, high)])]
     }
 }
 
@@ -77,7 +41,7 @@ fn join(_: Avx512, [x, y]: [Register; 2]) -> [__m512d; 2] {
     unsafe {
         let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
         let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
-        [_mm512_permutex2var_pd(x.0, low, y.0), _mm512_permutex2var_pd(x.0, high, y.0)]
+        [_mm512_permutex2var_pd(x.0[0], low, y.0[0]), _mm512_permutex2var_pd(x.0[0], high, y.0[0])]
     }
 }
 
@@ -119,7 +83,7 @@ unsafe fn eight(token: Avx512, [a, b, c, d, e, f, g, h]: [*const f64; LANES]) ->
     // SAFETY: the token proves AVX-512F; the caller answers for the addresses.
     unsafe {
         let (even, odd) = (four(token, [a, c, e, g]), four(token, [b, d, f, h]));
-        [Register(_mm512_unpacklo_pd(even, odd)), Register(_mm512_unpackhi_pd(even, odd))]
+        [Register([_mm512_unpacklo_pd(even, odd)]), Register([_mm512_unpackhi_pd(even, odd)])]
     }
 }
 
@@ -138,7 +102,7 @@ fn quarters(_: Avx512, four: __m512d) -> [__m128d; 4] {
 #[inline(always)]
 fn apart(token: Avx512, [x, y]: [Register; 2]) -> [__m128d; LANES] {
     // SAFETY: the token proves AVX-512F.
-    let (even, odd) = unsafe { (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0)) };
+    let (even, odd) = unsafe { (_mm512_unpacklo_pd(x.0[0], y.0[0]), _mm512_unpackhi_pd(x.0[0], y.0[0])) };
     let ([a, c, e, g], [b, d, f, h]) = (quarters(token, even), quarters(token, odd));
     [a, b, c, d, e, f, g, h]
 }
@@ -162,77 +126,25 @@ fn add_run(_: Avx512, pairs: &mut [Pair; LANES], low: __m512d, high: __m512d) {
     }
 }
 
-impl Values for Avx512 {
-    type F = Register;
+/// Values where others are above a limit; zero elsewhere.
+#[inline(always)]
+fn keep_above(_: Avx512, values: Register, others: Register, limit: Register) -> Register {
+    // SAFETY: the token proves AVX-512F.
+    Register(unsafe { [_mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(others.0[0], limit.0[0]), values.0[0])] })
+}
 
-    #[inline(always)]
-    fn splat(self, value: f64) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_set1_pd(value) })
-    }
+/// Lanes in which the first is at most the second, as bits.
+#[inline(always)]
+fn at_most(_: Avx512, a: Register, b: Register) -> u8 {
+    // SAFETY: the token proves AVX-512F.
+    unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0[0], b.0[0]) }
+}
 
-    #[inline(always)]
-    fn load(self, values: &[f64; LANES]) -> Register {
-        // SAFETY: the token proves AVX-512F; the array holds eight values.
-        Register(unsafe { _mm512_loadu_pd(values.as_ptr()) })
-    }
-
-    #[inline(always)]
-    fn store(self, lanes: Register, out: &mut [f64; LANES]) {
-        // SAFETY: the token proves AVX-512F; the array holds eight values.
-        unsafe { _mm512_storeu_pd(out.as_mut_ptr(), lanes.0) }
-    }
-
-    #[inline(always)]
-    fn max(self, a: Register, b: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_max_pd(a.0, b.0) })
-    }
-
-    #[inline(always)]
-    fn min(self, a: Register, b: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_min_pd(a.0, b.0) })
-    }
-
-    #[inline(always)]
-    fn keep_above(self, values: Register, others: Register, limit: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(others.0, limit.0), values.0) })
-    }
-
-    #[inline(always)]
-    fn at_most(self, a: Register, b: Register) -> u8 {
-        // SAFETY: the token proves AVX-512F.
-        unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0) }
-    }
-
-    #[inline(always)]
-    fn sqrt(self, lanes: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_sqrt_pd(lanes.0) })
-    }
-
-    #[inline(always)]
-    fn select(self, bits: u8, a: Register, b: Register) -> Register {
-        // SAFETY: the token proves AVX-512F.
-        Register(unsafe { _mm512_mask_mov_pd(b.0, bits, a.0) })
-    }
-
-    #[inline(always)]
-    fn gather_from(self, pairs: &[Pair], at: &Places) -> [Register; 2] {
-        // SAFETY: each address is that of a pair, two f64 in a row.
-        unsafe { eight(self, at.of(pairs)) }
-    }
-
-    #[inline(always)]
-    fn scatter_to(self, lanes: [Register; 2], pairs: &mut [Pair], at: &Places) {
-        let (at, parts) = (at.of_mut(pairs), apart(self, lanes));
-        for k in (0..LANES).rev() {
-            // SAFETY: the token proves AVX-512F; the address is that of a pair, two f64 in a row.
-            unsafe { _mm_storeu_pd(at[k], parts[k]) }
-        }
-    }
+/// The first in lanes with a bit, the second elsewhere.
+#[inline(always)]
+fn select(_: Avx512, bits: u8, a: Register, b: Register) -> Register {
+    // SAFETY: the token proves AVX-512F.
+    Register(unsafe { [_mm512_mask_mov_pd(b.0[0], bits, a.0[0])] })
 }
 
 impl Lanes for Avx512 {
@@ -259,7 +171,7 @@ impl Lanes for Avx512 {
             Some(full) => self.load(full),
             None => {
                 // SAFETY: the token proves AVX-512F; lanes beyond the end are not read.
-                Register(unsafe { _mm512_mask_loadu_pd(_mm512_set1_pd(fill), first(values.len()), values.as_ptr()) })
+                Register(unsafe { [_mm512_mask_loadu_pd(_mm512_set1_pd(fill), first(values.len()), values.as_ptr())] })
             }
         }
     }
@@ -298,34 +210,20 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn greatest(self, lanes: Register) -> f64 {
         // SAFETY: the token proves AVX-512F.
-        unsafe { _mm512_reduce_max_pd(lanes.0) }
+        unsafe { _mm512_reduce_max_pd(lanes.0[0]) }
     }
 
     #[inline(always)]
     fn sum(self, lanes: Register) -> f64 {
         // SAFETY: the token proves AVX-512F.
         unsafe {
-            let four = _mm256_add_pd(_mm512_castpd512_pd256(lanes.0), _mm512_extractf64x4_pd::<1>(lanes.0));
+            let four = _mm256_add_pd(_mm512_castpd512_pd256(lanes.0[0]), _mm512_extractf64x4_pd::<1>(lanes.0[0]));
             let two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd::<1>(four));
             _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)))
         }
     }
 
-    #[inline(always)]
-    fn gather(self, table: &Table, slots: &[Slot; LANES]) -> [Register; 2] {
-        // SAFETY: each address is that of a pair, two f64 in a row.
-        unsafe { eight(self, table.addresses(slots)) }
-    }
-
-    #[inline(always)]
-    fn scatter_add(self, table: &mut Table, slots: &[Slot; LANES], lanes: [Register; 2]) {
-        let parts = apart(self, lanes);
-        for k in 0..LANES {
-            let at = table.values_mut(slots[k]);
-            // SAFETY: the token proves AVX-512F; the address is that of a pair, two f64 in a row.
-            unsafe { _mm_storeu_pd(at, _mm_add_pd(_mm_loadu_pd(at), parts[k])) }
-        }
-    }
+    registers!(Register by slots);
 
     #[inline(always)]
     fn gather_triangles(self, table: &Table, [first, third]: [Slot; 2]) -> [[Register; 2]; 2] {

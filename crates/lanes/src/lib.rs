@@ -5,6 +5,10 @@
 //! engine outside `ffi/` is fenced in here.
 
 #[cfg(target_arch = "x86_64")]
+#[macro_use]
+mod registers;
+
+#[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;

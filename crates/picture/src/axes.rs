@@ -150,14 +150,22 @@ impl View {
 }
 
 /// The number of a tick at the left side of a frame.
-pub fn draw_left_number(sheet: &mut Sheet, [left, y]: Pixel, label: &str) {
+fn draw_left_number(sheet: &mut Sheet, [left, y]: Pixel, label: &str) {
     let style = TextStyle::new(TICK_SIZE).anchor(Anchor::End);
     sheet.text([left - TICK_LENGTH - 4.0, y + 0.36 * TICK_SIZE], label, style);
 }
 
-/// A pale line across a frame.
-pub fn draw_grid_line(sheet: &mut Sheet, from: Pixel, to: Pixel) {
-    sheet.line(from, to, Style::line(PALE, 1.0));
+/// A pale line across a frame at a height, with its number at the left.
+pub fn draw_level(sheet: &mut Sheet, frame: &Rect, y: f64, label: &str) {
+    sheet.line([frame.left, y], [frame.right(), y], Style::line(PALE, 1.0));
+    draw_left_number(sheet, [frame.left, y], label);
+}
+
+/// A pale upright line through a frame, with its number some way (px) below.
+pub fn draw_upright(sheet: &mut Sheet, frame: &Rect, x: f64, label: &str, below: f64) {
+    sheet.line([x, frame.top], [x, frame.bottom()], Style::line(PALE, 1.0));
+    let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
+    sheet.text([x, frame.bottom() + below + TICK_SIZE], label, style);
 }
 
 /// Round values along an axis.

@@ -3,7 +3,7 @@
 use super::Picture;
 use enmm_io::numbers::superscript;
 
-use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number};
+use super::axes::{LABEL_SIZE, Ticks, draw_level, draw_upright};
 use super::colour::{GREY, INK, LINES, WHITE};
 use super::history::thinned;
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, wrapped};
@@ -58,16 +58,12 @@ pub fn chart_picture(chart: &Chart) -> Picture {
             draw_ticks(&mut sheet, &x, &y);
             sheet.clipped(&FRAME.grown(MARK + 1.0), |sheet| draw_series(sheet, chart, &x, &y));
         }
-        _ => sheet.text(middle(), "no data", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY)),
+        _ => sheet.text(FRAME.middle(), "no data", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY)),
     }
     sheet.rect(&FRAME, Style::line(INK, 1.2));
     draw_names(&mut sheet, &chart.axes);
     draw_legend(&mut sheet, &chart.series);
     sheet.finish()
-}
-
-fn middle() -> Pixel {
-    [FRAME.left + 0.5 * FRAME.width, FRAME.top + 0.5 * FRAME.height]
 }
 
 /// The values that one axis shows; of a logarithmic one their decimal logarithms.
@@ -149,21 +145,19 @@ fn pixel(x: &Scale, y: &Scale, point: &[f64; 2]) -> Pixel {
 fn draw_ticks(sheet: &mut Sheet, x: &Scale, y: &Scale) {
     for (value, label) in x.ticks(FRAME.width / TICK_DISTANCE[0]) {
         let at = FRAME.left + x.fraction(value) * FRAME.width;
-        draw_grid_line(sheet, [at, FRAME.top], [at, FRAME.bottom()]);
-        let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
-        sheet.text([at, FRAME.bottom() + 6.0 + TICK_SIZE], &label, style);
+        draw_upright(sheet, &FRAME, at, &label, 6.0);
     }
     for (value, label) in y.ticks(FRAME.height / TICK_DISTANCE[1]) {
         let at = FRAME.bottom() - y.fraction(value) * FRAME.height;
-        draw_grid_line(sheet, [FRAME.left, at], [FRAME.right(), at]);
-        draw_left_number(sheet, [FRAME.left, at], &label);
+        draw_level(sheet, &FRAME, at, &label);
     }
 }
 
 fn draw_names(sheet: &mut Sheet, [x, y]: &[String; 2]) {
     let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
-    sheet.text([middle()[0], FRAME.bottom() + 48.0], &fitted(x, LABEL_SIZE, FRAME.width), style);
-    sheet.text([22.0, middle()[1]], &fitted(y, LABEL_SIZE, FRAME.height), style.upward());
+    let [across, up] = FRAME.middle();
+    sheet.text([across, FRAME.bottom() + 48.0], &fitted(x, LABEL_SIZE, FRAME.width), style);
+    sheet.text([22.0, up], &fitted(y, LABEL_SIZE, FRAME.height), style.upward());
 }
 
 fn draw_series(sheet: &mut Sheet, chart: &Chart, x: &Scale, y: &Scale) {

@@ -4,6 +4,18 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Colour(pub u8, pub u8, pub u8);
 
+/// Colours by their hexadecimal numbers.
+const fn colours<const N: usize>(numbers: [u32; N]) -> [Colour; N] {
+    let mut colours = [WHITE; N];
+    let mut k = 0;
+    while k < N {
+        let [_, red, green, blue] = numbers[k].to_be_bytes();
+        colours[k] = Colour(red, green, blue);
+        k += 1;
+    }
+    colours
+}
+
 /// Paper.
 pub const WHITE: Colour = Colour(255, 255, 255);
 /// Text and axes.
@@ -35,40 +47,16 @@ pub const BRIDGE: Colour = Colour(0, 158, 115);
 pub const BROKEN: Colour = Colour(240, 228, 66);
 
 /// Soft fills of blocks.
-pub const BLOCKS: [Colour; 8] = [
-    Colour(205, 224, 240),
-    Colour(246, 224, 196),
-    Colour(213, 232, 207),
-    Colour(239, 212, 216),
-    Colour(225, 216, 238),
-    Colour(244, 238, 198),
-    Colour(205, 234, 231),
-    Colour(229, 220, 208),
-];
+pub const BLOCKS: [Colour; 8] =
+    colours([0xcde0f0, 0xf6e0c4, 0xd5e8cf, 0xefd4d8, 0xe1d8ee, 0xf4eec6, 0xcdeae7, 0xe5dcd0]);
 
 /// Soft fills of rocks; neighbours in the list differ in grey too.
-pub const ROCKS: [Colour; 8] = [
-    Colour(240, 230, 208),
-    Colour(180, 196, 206),
-    Colour(224, 206, 178),
-    Colour(168, 184, 160),
-    Colour(236, 226, 238),
-    Colour(192, 172, 160),
-    Colour(214, 226, 206),
-    Colour(166, 166, 184),
-];
+pub const ROCKS: [Colour; 8] =
+    colours([0xf0e6d0, 0xb4c4ce, 0xe0ceb2, 0xa8b8a0, 0xece2ee, 0xc0aca0, 0xd6e2ce, 0xa6a6b8]);
 
 /// Dark lines: joint laws and series.
-pub const LINES: [Colour; 8] = [
-    Colour(31, 87, 160),
-    Colour(196, 62, 28),
-    Colour(27, 122, 75),
-    Colour(122, 63, 157),
-    Colour(166, 118, 0),
-    Colour(0, 128, 148),
-    Colour(176, 32, 96),
-    Colour(90, 90, 90),
-];
+pub const LINES: [Colour; 8] =
+    colours([0x1f57a0, 0xc43e1c, 0x1b7a4b, 0x7a3f9d, 0xa67600, 0x008094, 0xb02060, 0x5a5a5a]);
 
 /// Stars with 1, 2, 3 and with 4 or more covers.
 pub const COVERS: [Colour; 4] =
@@ -78,25 +66,10 @@ pub const COVERS: [Colour; 4] =
 pub const SCALE_STEPS: usize = 64;
 
 /// Viridis at equal steps (S. van der Walt and N. Smith, matplotlib, CC0).
-const VIRIDIS: [Colour; 17] = [
-    Colour(68, 1, 84),
-    Colour(72, 24, 106),
-    Colour(71, 45, 123),
-    Colour(66, 64, 134),
-    Colour(59, 82, 139),
-    Colour(51, 99, 141),
-    Colour(44, 114, 142),
-    Colour(38, 130, 142),
-    Colour(33, 145, 140),
-    Colour(31, 160, 136),
-    Colour(40, 174, 128),
-    Colour(63, 188, 115),
-    Colour(94, 201, 98),
-    Colour(132, 212, 75),
-    Colour(173, 220, 48),
-    Colour(216, 226, 25),
-    Colour(253, 231, 37),
-];
+const VIRIDIS: [Colour; 17] = colours([
+    0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c, 0x1fa088, 0x28ae80,
+    0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725,
+]);
 
 /// Part of white in the scale, so that dark lines stay visible on its dark end.
 const LIGHTENING: f64 = 0.18;

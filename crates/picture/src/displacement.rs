@@ -29,7 +29,10 @@ const EXAGGERATED: f64 = 0.008;
 /// the slope is drawn larger, and the picture says by how much.
 pub fn displacement_picture(snapshot: &Snapshot, title: &str, reference_outline: &Polygons) -> Picture {
     let field = Field::new(snapshot);
-    let factor = exaggeration(field.largest_at_point, &snapshot.elements);
+    // 1, or the round factor that makes the displacement visible.
+    let (size, moved) = (Bounds::of(&snapshot.elements.points).map_or(0.0, |b| b.diagonal()), field.largest_at_point);
+    let is_hidden = moved > 1e-12 * size && moved < VISIBLE * size;
+    let factor = if is_hidden { round_above(EXAGGERATED * size / moved) } else { 1.0 };
     let shown = if factor > 1.0 { &exaggerated(snapshot, factor) } else { snapshot };
     let bounds = Bounds::of(shown.elements.points.iter().chain(&reference_outline.points));
     let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - BAR_ROOM, height: HEIGHT_MAX };
@@ -77,15 +80,6 @@ impl Field {
             _ => ("µm", 1e-6),
         }
     }
-}
-
-/// 1, or the round factor that makes a displacement of `largest` (m) visible.
-fn exaggeration(largest: f64, elements: &Polygons) -> f64 {
-    let size = Bounds::of(&elements.points).map_or(0.0, |bounds| bounds.diagonal());
-    if !(largest > 1e-12 * size && largest < VISIBLE * size) {
-        return 1.0;
-    }
-    round_above(EXAGGERATED * size / largest)
 }
 
 /// Elements and boundaries alone, with every point displaced `factor` times as far.

@@ -1,7 +1,7 @@
 //! Histogram of the outputs of an ensemble, with the limit below which a sample fails.
 
 use super::Picture;
-use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number, three_digits};
+use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_level, draw_upright, three_digits};
 use super::colour::{ACCENT, Colour, GREY, INK};
 use super::sheet::{Anchor, Path, Rect, Sheet, Style, TextStyle, text_width};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_title};
@@ -70,17 +70,16 @@ pub fn histogram_picture(
     sorted.sort_by(f64::total_cmp);
     let shown = &sorted[..shown(&sorted)];
     let middle = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
-    let centre = frame.left + 0.5 * frame.width;
+    let [centre, height] = frame.middle();
     let fit = fit.filter(|fit| fit.sd > 0.0 && fit.mean.is_finite() && (fit.mean > 0.0 || !fit.is_lognormal));
     match Bins::of(shown, limit) {
         Some(bins) => {
             Chart::new(&frame, bins, limit, fit.zip(Some(sorted.len()))).draw(&mut sheet, &sorted, fit.as_ref())
         }
-        None => sheet.text([centre, TOP + 0.5 * HEIGHT], "no outputs", middle),
+        None => sheet.text([centre, height], "no outputs", middle),
     }
     sheet.rect(&frame, Style::line(INK, 1.2));
     sheet.text([centre, frame.bottom() + 45.0], name, middle);
-    let height = TOP + 0.5 * HEIGHT;
     sheet.text([LEFT - 76.0, height], "samples", middle.upward());
     sheet.text([frame.right() + 72.0, height], "share of the samples below", middle.upward());
     draw_legend(&mut sheet, frame.bottom() + BELOW_FRAME + LINE_HEIGHT, limit, fit, sorted.len() - shown.len());
@@ -131,8 +130,8 @@ fn draw_legend(sheet: &mut Sheet, y: f64, limit: f64, fit: Option<Fit>, beyond: 
 
 /// A bar: that of samples that fail is hatched.
 fn fill(sheet: &mut Sheet, bar: &Rect, fails: bool) {
-    let mut path = Path::default();
-    path.polygon([[bar.left, bar.top], [bar.right(), bar.top], [bar.right(), bar.bottom()], [bar.left, bar.bottom()]]);
+    let (left, top, right, bottom) = (bar.left, bar.top, bar.right(), bar.bottom());
+    let path = Path::closed([[left, top], [right, top], [right, bottom], [left, bottom]]);
     sheet.path(path.clone(), Style::fill(if fails { FAILS } else { STANDS }).edged(INK, 0.6));
     if fails {
         sheet.hatched(path, ACCENT);
@@ -211,9 +210,7 @@ impl<'a> Chart<'a> {
     /// The density as the number of samples that it puts into a bin.
     fn density(&self, fit: &Fit, n: usize) -> Path {
         let place = |output: f64| [self.x(output), self.y(fit.density(output) * n as f64 * self.bins.width)];
-        let mut path = Path::default();
-        path.line((0..=CURVE).map(|k| along(self.outputs, k)).map(place));
-        path
+        Path::open((0..=CURVE).map(|k| along(self.outputs, k)).map(place))
     }
 
     /// Steps of the share of the samples below each output.
@@ -227,23 +224,18 @@ impl<'a> Chart<'a> {
         }
         let last = steps[steps.len() - 1][1];
         steps.push([self.x(high), last]);
-        let mut path = Path::default();
-        path.line(super::history::thinned(steps.into_iter()));
-        path
+        Path::open(super::history::thinned(steps.into_iter()))
     }
 
     fn draw_ticks(&self, sheet: &mut Sheet) {
         let (frame, [low, high]) = (self.frame, self.outputs);
         let across = Ticks::new(low, high, 12.0);
         for &output in &across.values {
-            draw_grid_line(sheet, [self.x(output), frame.top], [self.x(output), frame.bottom()]);
-            let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
-            sheet.text([self.x(output), frame.bottom() + 4.0 + TICK_SIZE], &across.label(output), style);
+            draw_upright(sheet, frame, self.x(output), &across.label(output), 4.0);
         }
         let up = Ticks::new(0.0, self.most, 8.0);
         for &count in up.values.iter().filter(|count| count.fract() == 0.0) {
-            draw_grid_line(sheet, [frame.left, self.y(count)], [frame.right(), self.y(count)]);
-            draw_left_number(sheet, [frame.left, self.y(count)], &format!("{count}"));
+            draw_level(sheet, frame, self.y(count), &format!("{count}"));
         }
         for percent in [0.0, 25.0, 50.0, 75.0, 100.0] {
             let y = self.share_y(0.01 * percent);

@@ -6,7 +6,7 @@
 use super::Picture;
 use enmm_io::numbers::superscript;
 
-use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_grid_line, draw_left_number};
+use super::axes::{LABEL_SIZE, TICK_SIZE, Ticks, draw_level, draw_upright};
 use super::colour::{BAND, Colour, GREY, INK, LINES};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, text_width};
 use super::slope::{BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, WIDTH, draw_title};
@@ -66,7 +66,9 @@ pub fn history_picture(title: &str, series: &[Series], stages: &[StageStart]) ->
         axis.draw_names(&mut sheet, frame_top);
     }
     let title = axis.as_ref().map_or("time [s]", StageAxis::title);
-    draw_time_title(&mut sheet, &frame(groups.len().max(1) - 1), title);
+    let (last, style) =
+        (frame(groups.len().max(1) - 1), TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
+    sheet.text([last.middle()[0], last.bottom() + 45.0], title, style);
     sheet.finish()
 }
 
@@ -74,21 +76,13 @@ pub fn history_picture(title: &str, series: &[Series], stages: &[StageStart]) ->
 fn by_quantity(series: &[Series]) -> Vec<Vec<&Series>> {
     let mut groups: Vec<Vec<&Series>> = Vec::new();
     for series in series {
-        match groups.iter_mut().find(|group| is_alike(group[0], series)) {
+        let is_alike = |other: &Series| other.unit == series.unit && other.quantity == series.quantity;
+        match groups.iter_mut().find(|group| is_alike(group[0])) {
             Some(group) => group.push(series),
             None => groups.push(vec![series]),
         }
     }
     groups
-}
-
-fn is_alike(a: &Series, b: &Series) -> bool {
-    a.unit == b.unit && a.quantity == b.quantity
-}
-
-fn draw_time_title(sheet: &mut Sheet, last: &Rect, title: &str) {
-    let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
-    sheet.text([last.left + 0.5 * last.width, last.bottom() + 45.0], title, style);
 }
 
 fn is_drawable((time, value): (f64, f64)) -> bool {
@@ -159,8 +153,8 @@ impl Chart<'_> {
                 sheet.clipped(&self.frame, |sheet| self.draw_lines(sheet, group, axis, values));
             }
             _ => {
-                let middle = [self.frame.left + 0.5 * self.frame.width, self.frame.top + 0.5 * self.frame.height];
-                sheet.text(middle, "no data", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
+                let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
+                sheet.text(self.frame.middle(), "no data", style);
                 self.draw_value_title(sheet, &axis_title(quantity, unit, 0));
             }
         }
@@ -173,14 +167,12 @@ impl Chart<'_> {
     }
 
     fn draw_time_ticks(&self, sheet: &mut Sheet, axis: &StageAxis) {
-        let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
         for (x, label) in axis.ticks() {
-            draw_grid_line(sheet, [x, self.frame.top], [x, self.frame.bottom()]);
-            sheet.text([x, self.frame.bottom() + 4.0 + TICK_SIZE], &label, style);
+            draw_upright(sheet, &self.frame, x, &label, 4.0);
         }
         for [left, width] in axis.bands().filter(|[_, width]| *width > text_width("static", TICK_SIZE) + 8.0) {
             let middle = [left + 0.5 * width, self.frame.bottom() + 4.0 + TICK_SIZE];
-            sheet.text(middle, "static", style.colour(GREY));
+            sheet.text(middle, "static", TextStyle::new(TICK_SIZE).anchor(Anchor::Middle).colour(GREY));
         }
     }
 
@@ -191,8 +183,7 @@ impl Chart<'_> {
             Ticks::new(values.min / divisor, values.max / divisor, (self.frame.height / TICK_DISTANCE).max(3.0));
         for &value in &ticks.values {
             let y = self.frame.bottom() - values.fraction(value * divisor) * self.frame.height;
-            draw_grid_line(sheet, [self.frame.left, y], [self.frame.right(), y]);
-            draw_left_number(sheet, [self.frame.left, y], &ticks.label(value));
+            draw_level(sheet, &self.frame, y, &ticks.label(value));
         }
         self.draw_value_title(sheet, &axis_title(quantity, unit, exponent));
     }

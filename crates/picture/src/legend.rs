@@ -145,11 +145,7 @@ pub fn draw_beside(sheet: &mut Sheet, legends: &[Legend], [left, top]: Pixel) {
 /// Draws a sign centred on the height of `y`; returns the room it takes (px).
 fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
     let (middle, right) = (left + 0.4 * SIGN_WIDTH, left + 0.8 * SIGN_WIDTH);
-    let area = || {
-        let mut path = Path::default();
-        path.polygon([[left, y - 8.0], [right, y - 8.0], [right, y + 8.0], [left, y + 8.0]]);
-        path
-    };
+    let area = || Path::closed([[left, y - 8.0], [right, y - 8.0], [right, y + 8.0], [left, y + 8.0]]);
     match sign {
         Sign::None => return 0.0,
         Sign::Blank => {}

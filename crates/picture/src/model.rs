@@ -241,7 +241,10 @@ impl Model<'_> {
     fn draw(&self, sheet: &mut Sheet, view: &View) {
         sheet.clipped(&view.area, |sheet| {
             self.draw_pond(sheet, view);
-            self.draw_by_rock(sheet, view);
+            let rock = |k: usize| self.snapshot.rock.get(k).map_or(0, |&rock| rock as usize);
+            draw_filled(sheet, &self.snapshot.elements, view, &ROCKS, rock);
+            self.draw_outlines(sheet, view);
+            self.draw_joints(sheet, view);
             self.draw_water(sheet, view);
             self.draw_boxes(sheet, view);
         });
@@ -254,15 +257,6 @@ impl Model<'_> {
         self.draw_ports_and_monitors(sheet, view, &mut labels);
         self.draw_sets(sheet, view, &mut labels);
         view.draw_axes(sheet);
-    }
-
-    /// Rocks in their colours, and joints.
-    fn draw_by_rock(&self, sheet: &mut Sheet, view: &View) {
-        let snapshot = self.snapshot;
-        let rock = |k: usize| snapshot.rock.get(k).map_or(0, |&rock| rock as usize);
-        draw_filled(sheet, &snapshot.elements, view, &ROCKS, rock);
-        self.draw_outlines(sheet, view);
-        self.draw_joints(sheet, view);
     }
 
     /// Joints, thinner where there are many.
@@ -287,15 +281,10 @@ impl Model<'_> {
         self.draw_joints(sheet, view);
     }
 
-    /// Whether colours stand for rocks.
-    fn has_rocks(&self) -> bool {
-        self.snapshot.rocks.len() > 1
-    }
-
     /// Fills, mesh, hatched held blocks, block outlines.
     pub fn draw_blocks(&self, sheet: &mut Sheet, view: &View, with_mesh: bool) {
         let snapshot = self.snapshot;
-        let of = if self.has_rocks() { &snapshot.rock } else { &snapshot.block };
+        let of = if snapshot.rocks.len() > 1 { &snapshot.rock } else { &snapshot.block };
         draw_filled(sheet, &snapshot.elements, view, &BLOCKS, |k| of.get(k).map_or(0, |&number| number as usize));
         if with_mesh {
             sheet.path(outlines(&snapshot.elements, view), Style::line(WHITE, 0.8).opacity(0.9));
@@ -560,7 +549,7 @@ fn with_values(entry: Entry, values: Option<&String>) -> Vec<Entry> {
 }
 
 /// A text in a white rim near a position, unless there is no room.
-pub fn draw_label(sheet: &mut Sheet, labels: &mut Labels, at: Pixel, text: &str) {
+fn draw_label(sheet: &mut Sheet, labels: &mut Labels, at: Pixel, text: &str) {
     let text = fitted(text, LABEL_SIZE, 260.0);
     if let Some(position) = labels.position(at, &text).filter(|_| !text.is_empty()) {
         sheet.text(position, &text, TextStyle::new(LABEL_SIZE).halo());
@@ -568,12 +557,23 @@ pub fn draw_label(sheet: &mut Sheet, labels: &mut Labels, at: Pixel, text: &str)
 }
 
 /// Bolts with their plates; those that a stage installs later are broken lines.
-pub fn draw_bolts(sheet: &mut Sheet, view: &View, bolts: &[BoltMark]) {
+fn draw_bolts(sheet: &mut Sheet, view: &View, bolts: &[BoltMark]) {
     for bolt in bolts.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
         let style = Style::line(ACCENT, 2.6);
         let style = if bolt.condition == BoltCondition::Absent { Style::line(ACCENT, 2.0).dashed() } else { style };
         signs::draw_bolt(sheet, bolt.ends.map(|end| view.pixel(&end)), style);
     }
+}
+
+/// Bolts that are there, each with its tension at its far end; whether there is one.
+pub fn draw_tensions(sheet: &mut Sheet, view: &View, bolts: &[BoltMark]) -> bool {
+    let there: Vec<BoltMark> = bolts.iter().filter(|bolt| bolt.condition != BoltCondition::Absent).cloned().collect();
+    draw_bolts(sheet, view, &there);
+    let mut labels = Labels::new(view.area);
+    for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
+        draw_label(sheet, &mut labels, view.pixel(&bolt.ends[1]), &bolt.tension_text());
+    }
+    !there.is_empty()
 }
 
 /// The surface of water across a view, with its triangle.
@@ -582,9 +582,7 @@ pub fn draw_water(sheet: &mut Sheet, view: &View, surface: &[Point]) {
         return;
     }
     let line = surface_between(surface, view.world.min.x, view.world.max.x);
-    let mut path = Path::default();
-    path.line(line.iter().map(|point| view.pixel(point)));
-    sheet.path(path, Style::line(WATER, 2.4));
+    sheet.path(Path::open(line.iter().map(|point| view.pixel(point))), Style::line(WATER, 2.4));
     let x = view.world.min.x + 0.06 * view.world.size().x;
     signs::draw_water_mark(sheet, view.pixel(&Point::new(x, height_at(surface, x))));
 }

@@ -2,21 +2,17 @@
 
 use super::Picture;
 use super::annotations::{bolt_marks, counted};
-use super::axes::{
-    Bounds, LABEL_SIZE, TICK_SIZE, Ticks, View, draw_grid_line, draw_left_number, is_drawable, number_text,
-    three_digits,
-};
+use super::axes::{Bounds, LABEL_SIZE, Ticks, View, draw_level, draw_upright, is_drawable, number_text, three_digits};
 use super::colour::{ACCENT, Colour, GREY, INK, LINES, PALE, WHITE};
 use super::displacement::draw_length;
-use super::model::{BoltMark, draw_bolts, draw_label, draw_water};
+use super::model::{draw_tensions, draw_water};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, text_width};
 use super::signs::{draw_bolt, draw_shape, push_arrow};
 use super::slope::{
-    BELOW_FRAME, LEFT, LINE_HEIGHT, Labels, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled,
-    draw_title,
+    BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled, draw_title,
 };
 use enmm::geometry::Vector;
-use enmm_observe::{BoltCondition, Snapshot, water_surface};
+use enmm_observe::{Snapshot, water_surface};
 use enmm_stability::limit_analysis::Factor;
 use enmm_stability::strength_reduction::{FailingBlock, Reduction, Trial, Verdict};
 
@@ -84,26 +80,14 @@ fn caption(reduction: &Reduction) -> String {
     }
 }
 
-fn verdict_colour(verdict: Verdict) -> Colour {
-    match verdict {
-        Verdict::Stable => LINES[2],
-        Verdict::Caught => LINES[1],
-        Verdict::Unstable => ACCENT,
-    }
-}
-
-/// Corners of the shape of a verdict: stable is a disc.
-fn verdict_corners(verdict: Verdict) -> usize {
-    match verdict {
-        Verdict::Stable => 0,
-        Verdict::Caught => 3,
-        Verdict::Unstable => 4,
-    }
-}
-
+/// Draws the shape of a verdict: stable is a disc.
 fn draw_verdict(sheet: &mut Sheet, verdict: Verdict, at: Pixel) {
-    let fill = if verdict == Verdict::Caught { WHITE } else { verdict_colour(verdict) };
-    draw_shape(sheet, at, verdict_corners(verdict), 8.5, Style::fill(fill).edged(verdict_colour(verdict), 2.0));
+    let (corners, fill, edge) = match verdict {
+        Verdict::Stable => (0, LINES[2], LINES[2]),
+        Verdict::Caught => (3, WHITE, LINES[1]),
+        Verdict::Unstable => (4, ACCENT, ACCENT),
+    };
+    draw_shape(sheet, at, corners, 8.5, Style::fill(fill).edged(edge, 2.0));
 }
 
 fn draw_legend(sheet: &mut Sheet, reduction: &Reduction, y: f64) {
@@ -169,13 +153,10 @@ impl Chart {
         self.draw_ticks(sheet);
         let drawable = || reduction.trials.iter().filter(|trial| trial.displacement.is_finite());
         let position = |trial: &Trial| -> Pixel { [self.x(trial.factor), self.y(trial.displacement)] };
-        let mut line = Path::default();
-        line.line(drawable().map(position));
-        sheet.path(line, Style::line(GREY, 1.4));
+        sheet.path(Path::open(drawable().map(position)), Style::line(GREY, 1.4));
         if let Some(lost) = &reduction.lost {
-            let mut line = Path::default();
-            line.line(lost.trials.iter().filter(|trial| trial.displacement.is_finite()).map(position));
-            sheet.path(line, Style::line(GREY, 1.4).dashed());
+            let line = lost.trials.iter().filter(|trial| trial.displacement.is_finite()).map(position);
+            sheet.path(Path::open(line), Style::line(GREY, 1.4).dashed());
             lost.trials.iter().for_each(|trial| draw_verdict(sheet, trial.verdict, position(trial)));
         }
         self.draw_factors(sheet, reduction);
@@ -212,17 +193,13 @@ impl Chart {
     }
 
     fn draw_ticks(&self, sheet: &mut Sheet) {
-        let (top, bottom) = (self.frame.top, self.frame.bottom());
         let ticks = Ticks::new(self.factors[0], self.factors[1], 10.0);
         for &factor in &ticks.values {
-            draw_grid_line(sheet, [self.x(factor), top], [self.x(factor), bottom]);
-            let style = TextStyle::new(TICK_SIZE).anchor(Anchor::Middle);
-            sheet.text([self.x(factor), bottom + 4.0 + TICK_SIZE], &ticks.label(factor), style);
+            draw_upright(sheet, &self.frame, self.x(factor), &ticks.label(factor), 4.0);
         }
         for decade in self.decades[0].ceil() as i32..=self.decades[1].floor() as i32 {
             let y = self.y(10f64.powi(decade));
-            draw_grid_line(sheet, [self.frame.left, y], [self.frame.right(), y]);
-            draw_left_number(sheet, [self.frame.left, y], &number_text(1e3 * 10f64.powi(decade)));
+            draw_level(sheet, &self.frame, y, &number_text(1e3 * 10f64.powi(decade)));
         }
     }
 }
@@ -259,13 +236,10 @@ pub fn failure_picture(title: &str, reduction: &Reduction) -> Picture {
         draw_water(sheet, &view, &water);
         draw_motion(sheet, &view, &snapshot, failing);
     });
-    let bolts: Vec<BoltMark> =
-        bolt_marks(simulation).into_iter().filter(|bolt| bolt.condition != BoltCondition::Absent).collect();
-    draw_bolts(&mut sheet, &view, &bolts);
-    draw_tensions(&mut sheet, &view, &bolts);
+    let has_bolts = draw_tensions(&mut sheet, &view, &bolt_marks(simulation));
     view.draw_axes(&mut sheet);
     let y = view.area.bottom() + BELOW_FRAME + LINE_HEIGHT;
-    draw_failure_legend(&mut sheet, &view, y, [!failing.is_empty(), !bolts.is_empty()]);
+    draw_failure_legend(&mut sheet, &view, y, [!failing.is_empty(), has_bolts]);
     sheet.finish()
 }
 
@@ -307,14 +281,6 @@ fn draw_motion(sheet: &mut Sheet, view: &View, snapshot: &Snapshot, failing: &[F
     }
     sheet.path(arrows.clone(), Style::line(WHITE, 5.0).opacity(0.9));
     sheet.path(arrows, Style::line(INK, 2.2));
-}
-
-/// The tension of each bolt at its far end.
-fn draw_tensions(sheet: &mut Sheet, view: &View, bolts: &[BoltMark]) {
-    let mut labels = Labels::new(view.area);
-    for bolt in bolts.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-        draw_label(sheet, &mut labels, view.pixel(&bolt.ends[1]), &bolt.tension_text());
-    }
 }
 
 fn draw_failure_legend(sheet: &mut Sheet, view: &View, y: f64, [fails, bolts]: [bool; 2]) {

@@ -32,6 +32,11 @@ impl Rect {
         self.top + self.height
     }
 
+    /// Its middle.
+    pub fn middle(&self) -> Pixel {
+        [self.left + 0.5 * self.width, self.top + 0.5 * self.height]
+    }
+
     /// Whether the position lies inside or on the edge.
     pub fn contains(&self, [x, y]: Pixel) -> bool {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
@@ -168,6 +173,20 @@ pub enum PathStep {
 }
 
 impl Path {
+    /// An open line.
+    pub fn open(positions: impl IntoIterator<Item = Pixel>) -> Self {
+        let mut path = Self::default();
+        path.line(positions);
+        path
+    }
+
+    /// A closed outline.
+    pub fn closed(corners: impl IntoIterator<Item = Pixel>) -> Self {
+        let mut path = Self::default();
+        path.polygon(corners);
+        path
+    }
+
     /// Whether nothing would be drawn.
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
@@ -267,9 +286,7 @@ impl Sheet {
 
     /// Draws a straight line.
     pub fn line(&mut self, from: Pixel, to: Pixel, style: Style) {
-        let mut path = Path::default();
-        path.line([from, to]);
-        self.path(path, style);
+        self.path(Path::open([from, to]), style);
     }
 
     /// Sets a text with its base line at `y`.

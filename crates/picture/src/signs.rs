@@ -26,9 +26,9 @@ pub fn draw_held(sheet: &mut Sheet, held: Held, tip: Pixel, out: [f64; 2]) {
     let side = [-out[1], out[0]];
     // `along` the outer side, `away` from the rock.
     let at = |along: f64, away: f64| [0, 1].map(|k| tip[k] + along * side[k] + away * out[k]);
-    let ink = Style::line(INK, 1.3);
-    let mut solid = Path::default();
-    let mut lines = Path::default();
+    let is_fixity = matches!(held, Held::Pinned | Held::Roller);
+    let ink = if is_fixity { Style::line(INK, 1.3) } else { Style::line(QUIET, 1.7) };
+    let (mut solid, mut lines) = (Path::default(), Path::default());
     match held {
         Held::Pinned => {
             solid.polygon([tip, at(-6.0, 10.0), at(6.0, 10.0)]);
@@ -43,23 +43,17 @@ pub fn draw_held(sheet: &mut Sheet, held: Held, tip: Pixel, out: [f64; 2]) {
             }
         }
         Held::Quiet => {
-            let ink = Style::line(QUIET, 1.7);
             lines.line([tip, at(0.0, 8.0)]);
             lines.line([at(-4.0, 8.0), at(4.0, 8.0)]);
             lines.line([at(-6.0, 4.5), at(-6.0, 12.0), at(6.0, 12.0), at(6.0, 4.5)]);
             lines.line([at(0.0, 12.0), at(0.0, 16.0)]);
-            sheet.path(lines, ink);
-            return;
         }
         Held::FreeField => {
-            let ink = Style::line(QUIET, 1.7);
             lines.line([at(-13.0, 14.0), at(13.0, 14.0)]);
             lines.line([at(-13.0, 19.0), at(13.0, 19.0)]);
             lines.line([tip, at(0.0, 5.0)]);
             lines.line([at(-4.0, 3.0), at(-4.0, 8.0), at(4.0, 8.0), at(4.0, 3.0)]);
             lines.line([at(0.0, 8.0), at(0.0, 14.0)]);
-            sheet.path(lines, ink);
-            return;
         }
     }
     sheet.path(solid, Style::fill(WHITE).edged(INK, 1.3));
@@ -98,8 +92,7 @@ pub fn draw_moment(sheet: &mut Sheet, centre: Pixel, counter_clockwise: bool, st
         let angle = turn * f64::from(k) * 15f64.to_radians();
         [centre[0] + 16.0 * libm::cos(angle), centre[1] + 16.0 * libm::sin(angle)]
     };
-    let mut path = Path::default();
-    path.line((0..=17).map(at));
+    let mut path = Path::open((0..=17).map(at));
     push_arrow(&mut path, at(17), at(19), 8.0);
     sheet.path(path, style);
 }
@@ -108,8 +101,7 @@ pub fn draw_moment(sheet: &mut Sheet, centre: Pixel, counter_clockwise: bool, st
 pub fn draw_bolt(sheet: &mut Sheet, [[x, y], [u, v]]: [Pixel; 2], style: Style) {
     let length = libm::hypot(u - x, v - y).max(f64::MIN_POSITIVE);
     let plate = [5.0 * (v - y) / length, -5.0 * (u - x) / length];
-    let mut path = Path::default();
-    path.line([[x, y], [u, v]]);
+    let mut path = Path::open([[x, y], [u, v]]);
     path.line([[x + plate[0], y + plate[1]], [x - plate[0], y - plate[1]]]);
     sheet.path(path, style);
 }
@@ -124,16 +116,13 @@ pub fn draw_shape(sheet: &mut Sheet, centre: Pixel, corners: usize, radius: f64,
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / corners as f64);
         [centre[0] + radius * sin, centre[1] - radius * cos]
     };
-    let mut path = Path::default();
-    path.polygon((0..corners).map(corner));
-    sheet.path(path, style);
+    sheet.path(Path::closed((0..corners).map(corner)), style);
 }
 
 /// Draws the triangle that stands on the surface of water.
 pub fn draw_water_mark(sheet: &mut Sheet, [x, y]: Pixel) {
-    let mut path = Path::default();
-    path.polygon([[x, y - 1.0], [x - 6.0, y - 11.0], [x + 6.0, y - 11.0]]);
-    sheet.path(path, Style::fill(WHITE).edged(WATER, 1.8));
+    let corners = [[x, y - 1.0], [x - 6.0, y - 11.0], [x + 6.0, y - 11.0]];
+    sheet.path(Path::closed(corners), Style::fill(WHITE).edged(WATER, 1.8));
 }
 
 /// Draws the mark of a monitor.
@@ -144,9 +133,8 @@ pub fn draw_monitor(sheet: &mut Sheet, position: Pixel) {
 
 /// Draws the mark of a port.
 pub fn draw_port(sheet: &mut Sheet, [x, y]: Pixel) {
-    let mut path = Path::default();
-    path.polygon([[x, y - 8.0], [x + 8.0, y], [x, y + 8.0], [x - 8.0, y]]);
-    sheet.path(path, Style::fill(WHITE).edged(ACCENT, 2.2));
+    let corners = [[x, y - 8.0], [x + 8.0, y], [x, y + 8.0], [x - 8.0, y]];
+    sheet.path(Path::closed(corners), Style::fill(WHITE).edged(ACCENT, 2.2));
 }
 
 /// Draws two principal stresses as lines through `centre`: half of each is `half` (px); tension has heads that point

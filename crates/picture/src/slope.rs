@@ -35,8 +35,8 @@ pub fn draw_title(sheet: &mut Sheet, title: &str, caption: &str) {
 /// Says so if there is no element.
 pub fn draw_absence(sheet: &mut Sheet, view: &View, elements: &Polygons) {
     if elements.is_empty() {
-        let middle = [view.area.left + 0.5 * view.area.width, view.area.top + 0.5 * view.area.height];
-        sheet.text(middle, "no elements", TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY));
+        let style = TextStyle::new(LABEL_SIZE).anchor(Anchor::Middle).colour(GREY);
+        sheet.text(view.area.middle(), "no elements", style);
     }
 }
 

@@ -8,12 +8,12 @@ use super::bar::{BAR_ROOM, draw_bar};
 use super::colour::{BRIDGE, BROKEN, GREY, INK, LOCK, PALE, ROCK, SCALE_STEPS, SLIP, WHITE, scale, scale_step};
 use super::displacement::draw_length;
 use super::legend::{self, Entry, Legend, Sign};
-use super::model::{BoltMark, draw_bolts, draw_label, draw_water};
+use super::model::{BoltMark, draw_tensions, draw_water};
 use super::sheet::{Path, Pixel, Rect, Sheet, Style, TextStyle};
 use super::signs::{OPEN_WIDTH, draw_cross, push_arrow};
 use super::slope::{
-    BELOW_FRAME, LEFT, Labels, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines,
-    draw_filled, draw_title,
+    BELOW_FRAME, LEFT, MARGIN, TOP, WIDTH, block_outlines, corners, draw_absence, draw_block_outlines, draw_filled,
+    draw_title,
 };
 use enmm::geometry::{Point, Vector};
 use enmm_observe::{BoltCondition, BondState, ContactState, JointPiece, Snapshot, stress};
@@ -104,15 +104,11 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
     let mut sheet = StageSheet::new(stage, MARGIN, "states of joints");
     sheet.draw_rock();
     let view = sheet.view;
-    let mut paths = BTreeMap::new();
-    let mut lengths = [0.0; 3];
-    for joint in joints.iter().filter(|joint| joint.ends.iter().all(is_drawable)) {
-        let state = joint.state as usize;
-        lengths[state] += (joint.ends[1] - joint.ends[0]).norm();
-        paths.entry(state).or_insert_with(Path::default).line(joint.ends.map(|end| view.pixel(&end)));
-    }
-    let bonds = [BondState::Holds, BondState::Broken].map(|state| of_bonds(joints, state, &view));
-    let path = |state: ContactState| paths.get(&(state as usize)).cloned().unwrap_or_default();
+    let states = [ContactState::Open, ContactState::Slip, ContactState::Lock];
+    let states = states.map(|state| of_joints(joints, &view, |joint| joint.state == state));
+    let bonds = [BondState::Holds, BondState::Broken];
+    let bonds = bonds.map(|state| of_joints(joints, &view, |joint| joint.bond == state));
+    let path = |state: ContactState| states[state as usize].0.clone();
     let fine = if joints.len() > 6000 { 0.6 } else { 1.0 };
     sheet.sheet.clipped(&view.area, |sheet| {
         sheet.path(path(ContactState::Lock), Style::line(LOCK, 1.8 * fine));
@@ -124,9 +120,9 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
         sheet.path(bonds[1].0.clone(), Style::line(BROKEN, (BRIDGE_WIDTH - 2.4) * fine));
     });
     sheet.decorate();
-    let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let total = states.iter().map(|(_, length)| length).sum::<f64>().max(f64::MIN_POSITIVE);
     let entry = |state: ContactState, sign, name: &str| {
-        let length = lengths[state as usize];
+        let length = states[state as usize].1;
         Entry::new(sign, format!("{name}: {} m, {} %", number_text(length.round()), (100.0 * length / total).round()))
     };
     let entries = vec![
@@ -150,10 +146,10 @@ pub fn joints_picture(stage: &StageEnd, joints: &[JointPiece]) -> Picture {
     sheet.close_with(&legends)
 }
 
-/// Joints whose bond is in a state, and their length (m).
-fn of_bonds(joints: &[JointPiece], state: BondState, view: &View) -> (Path, f64) {
+/// Some of the joints, and their length (m).
+fn of_joints(joints: &[JointPiece], view: &View, are: impl Fn(&JointPiece) -> bool) -> (Path, f64) {
     let mut found = (Path::default(), 0.0);
-    for joint in joints.iter().filter(|joint| joint.bond == state && joint.ends.iter().all(is_drawable)) {
+    for joint in joints.iter().filter(|joint| are(joint) && joint.ends.iter().all(is_drawable)) {
         found.0.line(joint.ends.map(|end| view.pixel(&end)));
         found.1 += (joint.ends[1] - joint.ends[0]).norm();
     }
@@ -243,7 +239,8 @@ fn vectors_picture(
     });
     sheet.decorate();
     let (unit, size) = unit_of(largest, units);
-    let ticks = if logarithmic { decade_ticks(largest / size) } else { linear_ticks(largest / size) };
+    let decade = |value: f64| (1.0 + (libm::log10(value) - libm::log10(largest / size)) / DECADES, number_text(value));
+    let ticks = if logarithmic { decades(largest / size).map(decade).collect() } else { linear_ticks(largest / size) };
     draw_bar(&mut sheet.sheet, &view.area, &format!("{name} [{unit}]"), &ticks);
     let scale = if logarithmic { ", logarithmic scale" } else { "" };
     sheet.close(&format!("longest arrow {} {unit}{scale}; slope true to scale", three_digits(largest / size)))
@@ -256,12 +253,6 @@ fn linear_ticks(largest: f64) -> Vec<(f64, String)> {
         return vec![(0.0, "0".to_owned())];
     }
     ticks.values.iter().map(|&value| (value / largest, ticks.label(value))).collect()
-}
-
-/// Ticks of a logarithmic scale that ends at `largest`.
-fn decade_ticks(largest: f64) -> Vec<(f64, String)> {
-    let top = libm::log10(largest);
-    decades(largest).map(|value| (1.0 + (libm::log10(value) - top) / DECADES, number_text(value))).collect()
 }
 
 /// 1, 2 and 5 times the powers of ten in the decades below `largest`.
@@ -365,13 +356,7 @@ impl<'a> StageSheet<'a> {
         let (stage, view) = (self.stage, self.view);
         draw_absence(&mut self.sheet, &view, &stage.snapshot.elements);
         self.sheet.clipped(&view.area, |sheet| draw_water(sheet, &view, stage.water));
-        let there: Vec<BoltMark> =
-            stage.bolts.iter().filter(|bolt| bolt.condition != BoltCondition::Absent).cloned().collect();
-        draw_bolts(&mut self.sheet, &view, &there);
-        let mut labels = Labels::new(view.area);
-        for bolt in there.iter().filter(|bolt| bolt.ends.iter().all(is_drawable)) {
-            draw_label(&mut self.sheet, &mut labels, view.pixel(&bolt.ends[1]), &bolt.tension_text());
-        }
+        draw_tensions(&mut self.sheet, &view, stage.bolts);
         view.draw_axes(&mut self.sheet);
     }
 

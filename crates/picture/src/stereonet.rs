@@ -131,15 +131,12 @@ impl Stereonet {
                 let back = (0..=PIECES).map(|k| last.trend + turn * f64::from(k) / f64::from(PIECES));
                 outline.extend(back.map(|trend| self.at(&Line { plunge: friction, trend })));
             }
-            let mut zone = Path::default();
-            zone.polygon(outline);
-            sheet.path(zone, Style::fill(SLIP).opacity(0.16));
+            sheet.path(Path::closed(outline), Style::fill(SLIP).opacity(0.16));
         }
         if let Some(friction) = self.friction() {
             let round = (0..=4 * PIECES).map(|k| f64::from(k) * 90.0 / f64::from(PIECES));
-            let mut circle = Path::default();
-            circle.line(round.map(|trend| self.at(&Line { plunge: friction, trend })));
-            sheet.path(circle, Style::line(SLIP, 1.6).dashed());
+            let circle = round.map(|trend| self.at(&Line { plunge: friction, trend }));
+            sheet.path(Path::open(circle), Style::line(SLIP, 1.6).dashed());
             let at = self.at(&Line { plunge: friction, trend: azimuth(self.face.direction + 180.0) });
             let text = format!("friction {friction:.0}°");
             sheet.text([at[0], at[1] - 6.0], &text, TextStyle::new(SMALL).anchor(Anchor::Middle).colour(SLIP).halo());
@@ -150,9 +147,7 @@ impl Stereonet {
     }
 
     fn great_circle(&self, sheet: &mut Sheet, plane: &Plane, style: Style) {
-        let mut circle = Path::default();
-        circle.line(plane.lines(PIECES).iter().map(|line| self.at(line)));
-        sheet.path(circle, style);
+        sheet.path(Path::open(plane.lines(PIECES).iter().map(|line| self.at(line))), style);
     }
 
     /// Great circle, dip line and pole of each set.
@@ -174,9 +169,8 @@ impl Stereonet {
     fn wedges(&self, sheet: &mut Sheet, found: &Failures) {
         for (.., line) in &found.wedges {
             let [x, y] = self.at(line);
-            let mut mark = Path::default();
-            mark.polygon([[x, y - 8.0], [x + 7.0, y + 5.0], [x - 7.0, y + 5.0]]);
-            sheet.path(mark, Style::fill(ACCENT));
+            let corners = [[x, y - 8.0], [x + 7.0, y + 5.0], [x - 7.0, y + 5.0]];
+            sheet.path(Path::closed(corners), Style::fill(ACCENT));
         }
         for (a, b, line) in &found.wedges {
             let [x, y] = self.at(line);

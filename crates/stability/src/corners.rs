@@ -115,7 +115,8 @@ fn weight(simulation: &Simulation, block: BlockId) -> f64 {
 /// The corner contacts of the drawing with the blocks that are there.
 pub fn corner_contacts(simulation: &Simulation) -> Vec<CornerContact> {
     let rounds = Rounds::new(&simulation.model().boundary, &simulation.state().removed);
-    let mut found: Vec<CornerContact> = rounds.places().flat_map(|place| rounds.corners_at(place)).collect();
+    let feet = rounds.places().flat_map(|place| rounds.feet(place).into_iter().map(move |foot| (place, foot)));
+    let mut found: Vec<CornerContact> = feet.filter_map(|(place, foot)| rounds.corner(place, &foot)).collect();
     let strength = |block| strength_of(simulation, block);
     found.iter_mut().for_each(|corner| corner.strength = strength(corner.block).min(strength(corner.ahead)));
     found
@@ -180,11 +181,6 @@ impl Foot {
 
     fn angle(sectors: &[Sector]) -> f64 {
         sectors.iter().map(|sector| sector.angle).sum()
-    }
-
-    /// Whether the rest of the rock rises before the block above the face on which it stands.
-    fn is_barred(&self) -> bool {
-        Self::angle(&self.rest) > PI + STRAIGHT
     }
 }
 
@@ -252,14 +248,11 @@ impl<'a> Rounds<'a> {
             .collect()
     }
 
-    fn corners_at(&self, place: Point) -> Vec<CornerContact> {
-        self.feet(place).iter().filter_map(|foot| self.corner(place, foot)).collect()
-    }
-
     /// The corner contact of a block at the air, if it has one.
     fn corner(&self, place: Point, foot: &Foot) -> Option<CornerContact> {
         let (own, ahead) = (foot.own.first()?, foot.rest.last()?);
-        if foot.is_barred() {
+        // The rest of the rock rises before the block above the face on which it stands.
+        if Foot::angle(&foot.rest) > PI + STRAIGHT {
             let stands = foot.standing()?;
             let contacts = self.contacts(foot, &[], stands.map(|edge| self.boundary.side[edge]));
             return corner_contact(own.block, ahead.block, [place; 2], contacts);
@@ -278,9 +271,12 @@ impl<'a> Rounds<'a> {
         let direction = self.direction(edge);
         let mut lip = Vec::new();
         let mut goes_on = is_of_both(&foot.rest);
-        while goes_on && libm::fabs(angle_between(direction, self.direction(edge))) <= FACING {
+        let bends = |way: Vector| libm::fabs(libm::atan2(direction.perp(&way), direction.dot(&way)));
+        while goes_on && bends(self.direction(edge)) <= FACING {
             lip.push(edge);
-            let end = self.boundary.reference[self.inner_end(edge, foot.turn)];
+            // The end that is farther from the air.
+            let inner = if foot.turn == Turn::Clockwise { self.boundary.after(edge) } else { edge };
+            let end = self.boundary.reference[inner];
             if let Some(stands) = self.stands_at(end, foot) {
                 return Some((lip, end, stands));
             }
@@ -292,11 +288,6 @@ impl<'a> Rounds<'a> {
             };
         }
         None
-    }
-
-    /// The end of an edge of the shared face that is farther from the air.
-    fn inner_end(&self, edge: EdgeId, turn: Turn) -> EdgeId {
-        if turn == Turn::Clockwise { self.boundary.after(edge) } else { edge }
     }
 
     /// Edges of the block and of the next one on the face on which it stands, where it fills a notch of rock.
@@ -358,9 +349,4 @@ fn wrapped(angle: f64) -> f64 {
     let angle = libm::fmod(angle, TAU);
     let angle = if angle < 0.0 { angle + TAU } else { angle };
     if TAU - angle <= ROUND_OFF { 0.0 } else { angle }
-}
-
-/// Angle (rad) from one direction to another.
-fn angle_between(from: Vector, to: Vector) -> f64 {
-    libm::atan2(from.perp(&to), from.dot(&to))
 }

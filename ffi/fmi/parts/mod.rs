@@ -52,7 +52,11 @@ struct Part {
 /// # Errors
 /// When cargo cannot name the crates, or the sources or the licence of one are missing.
 pub fn of(repository: Option<&Path>) -> Result<Parts, String> {
-    let Some(root) = repository else { return unlisted() };
+    let Some(root) = repository else {
+        let licenses = "enmm may be used under MIT or Apache-2.0. This build was not made in the repository of enmm, so\n\
+                        the licences of the Rust crates in its libraries and its program are not listed here.\n";
+        return Ok(Parts { list: list(&[], &BTreeMap::new())?, licenses: licenses.to_owned() });
+    };
     let metadata = metadata(root)?;
     let parts = parts(&metadata);
     let checksums = checksums(&read(&root.join("Cargo.lock"))?);
@@ -65,12 +69,6 @@ pub fn of(repository: Option<&Path>) -> Result<Parts, String> {
          library is there as well, under MIT or Apache-2.0.\n\n{rule}\n\n{mit}\n{rule}\n\n{apache}"
     );
     Ok(Parts { list: list(&parts, &checksums)?, licenses: head + &licenses(&parts, &mit)? + WINDOWS })
-}
-
-fn unlisted() -> Result<Parts, String> {
-    let licenses = "enmm may be used under MIT or Apache-2.0. This build was not made in the repository of enmm, so\n\
-                    the licences of the Rust crates in its libraries and its program are not listed here.\n";
-    Ok(Parts { list: list(&[], &BTreeMap::new())?, licenses: licenses.to_owned() })
 }
 
 /// The crates as cargo resolves them. Sources of other platforms and of tests may be missing on this machine although
@@ -258,18 +256,9 @@ mod tests {
         let names = ["linked", "below", "built", "tested", "macro"];
         let mut packages = vec![package("enmm-capi", "cdylib", None)];
         packages.extend(names.map(|name| package(name, if name == "macro" { "proc-macro" } else { "lib" }, Some("r"))));
-        let mut nodes = vec![
-            node("linked", vec![from("below", None)]),
-            node(
-                "enmm-capi",
-                vec![
-                    from("linked", None),
-                    from("built", Some("build")),
-                    from("macro", None),
-                    from("tested", Some("dev")),
-                ],
-            ),
-        ];
+        let kinds = [("linked", None), ("built", Some("build")), ("macro", None), ("tested", Some("dev"))];
+        let of_library = kinds.into_iter().map(|(name, kind)| from(name, kind)).collect();
+        let mut nodes = vec![node("linked", vec![from("below", None)]), node("enmm-capi", of_library)];
         nodes.extend(["below", "built", "tested", "macro"].map(|name| node(name, Vec::new())));
         let found = parts(&json!({"packages": packages, "resolve": {"nodes": nodes}}));
         let named: Vec<_> = found.iter().map(|part| (part.name.as_str(), part.license.as_str())).collect();
@@ -278,12 +267,9 @@ mod tests {
 
     #[test]
     fn a_part_without_any_text_of_another_licence_is_an_error() {
-        let part = |license: &str| Part {
-            name: "a".into(),
-            version: "1.0.0".into(),
-            license: license.into(),
-            authors: "B".into(),
-            folder: String::new(),
+        let part = |license: &str| {
+            let [name, version, license, authors, folder] = ["a", "1.0.0", license, "B", ""].map(str::to_owned);
+            Part { name, version, license, authors, folder }
         };
         let own = "MIT License\n\nCopyright (c) us\n\nPermission is hereby granted, free of charge\n";
         assert!(

@@ -1,5 +1,6 @@
 //! Outline, joints, joint sets and mesh edges in one arrangement.
 
+use crate::contact::LawId;
 use crate::cover::{self, Crumb, CrumbRule, RegularMesh};
 use crate::geometry::ends::EndDistances;
 use crate::geometry::loops::{validate_holes, validate_loop};
@@ -39,26 +40,27 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let mut joints = joints(case, low, high)?;
     demand.check_traces(&joints.traces)?;
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
-    let is_rock = |position| loops.hold(position);
-    demand.check_dense(&joints.traces, tolerance, is_rock)?;
-    demand.check_crossings(&joints.traces, tolerance, is_rock)?;
-    let distances = ends::distances(case, (high - low).norm(), tolerance);
-    let ends = ends::join(case, &mut joints, &loops.sides(), &distances, is_rock);
-    let ends = ends.map_err(|error| demand.explain(&error))?;
-    let user_traces = joints.traces.len();
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
+    let arrange = |pieces: &mut dyn Iterator<Item = Segment>| {
+        let mut segments = loops.segments();
+        segments.extend(pieces);
+        segments.reserve(3 * RegularMesh::cell_estimate(case.mesh.size, low, high) as usize);
+        segments.extend(mesh.segments(low, high));
+        let arranged = arrange_within(&segments, tolerance, demand.edges_max());
+        arranged.map_err(|error| demand.explain(&error))
+    };
+    if let Some(some) = Demand::sample(&pieces(&joints)) {
+        demand.check_sample(&arrange(&mut some.copied())?)?;
+    }
+    let distances = ends::distances(case, (high - low).norm(), tolerance);
+    let ends = ends::join(case, &mut joints, &loops.sides(), &distances, |position| loops.hold(position));
+    let ends = ends.map_err(|error| demand.explain(&error))?;
+    let user_traces = joints.traces.len();
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), joints.default_law));
     joints.traces.extend(islands);
-    let mut segments = loops.segments();
-    for (trace, (points, _)) in TraceId::all(joints.traces.len()).zip(&joints.traces) {
-        segments.extend(points.windows(2).map(|p| segment(p[0], p[1], 0, Some(trace))));
-    }
-    segments.reserve(3 * RegularMesh::cell_estimate(case.mesh.size, low, high) as usize);
-    segments.extend(mesh.segments(low, high));
     tell(BuildStage::Arrangement);
-    let arranged = arrange_within(&segments, tolerance, demand.edges_max());
-    let arrangement = arranged.map_err(|error| demand.explain(&error))?;
+    let arrangement = arrange(&mut pieces(&joints).into_iter())?;
     demand.check_edges(&arrangement)?;
     let joined = cover::join_crumbs(arrangement, CrumbRule::below(case.mesh.least_block()));
     let (mut arrangement, crumbs) = joined.map_err(|error| demand.explain(&error))?;
@@ -66,6 +68,15 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     report.traces.truncate(user_traces);
     report.overlapping_traces.retain(|pair| pair.iter().all(|&t| t.index() < user_traces));
     Ok(Plane { mesh, arrangement, joints, ends, distances, crumbs })
+}
+
+/// The straight pieces of all traces.
+fn pieces(joints: &Joints) -> Vec<Segment> {
+    let traces = TraceId::all(joints.traces.len()).zip(&joints.traces);
+    let of = |(trace, (points, _)): (TraceId, &(Vec<Point>, LawId))| -> Vec<Segment> {
+        points.windows(2).map(|p| segment(p[0], p[1], 0, Some(trace))).collect()
+    };
+    traces.flat_map(of).collect()
 }
 
 fn segment(a: Point, b: Point, outline: i8, trace: Option<TraceId>) -> Segment {

@@ -87,7 +87,7 @@ fn peers(names: &[String]) -> Result<Vec<Peer>, String> {
     if names == ["all"] {
         return Ok(Peer::ALL.to_vec());
     }
-    let known = || Peer::ALL.map(Peer::name).join(", ");
+    let known = || Peer::ALL.map(|peer| peer.name).join(", ");
     let read = |name: &String| {
         Peer::parse(name)
             .ok_or_else(|| format!("there is no program {name:?} to compare with: try {}, or all", known()))

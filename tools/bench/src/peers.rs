@@ -29,47 +29,35 @@ const LAST_LINES: usize = 3;
 
 /// A program that is timed beside this one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Peer {
-    /// Rapier's soft bodies: deformable blocks, implicit finite elements.
-    Rapier,
-    /// The same, their elasticity swept with the contacts.
-    RapierConstraints,
-    /// Box2D: rigid blocks.
-    Box2d,
-    /// A Numba kernel: elements without contact.
-    Numba,
+pub struct Peer {
+    /// Its name.
+    pub name: &'static str,
+    /// Folder of its sources, which ends the name of its program.
+    folder: &'static str,
+    /// Whether it simulates slopes; else it updates the elements of continua.
+    is_for_slopes: bool,
 }
 
 impl Peer {
+    /// Rapier's soft bodies: deformable blocks, implicit finite elements.
+    const RAPIER: Self = Self { name: "rapier", folder: "rapier", is_for_slopes: true };
+    /// The same, their elasticity swept with the contacts.
+    const RAPIER_CONSTRAINTS: Self = Self { name: "rapier-constraints", ..Self::RAPIER };
+    /// Box2D: rigid blocks.
+    const BOX2D: Self = Self { name: "box2d", folder: "box2d", is_for_slopes: true };
+    /// A Numba kernel: elements without contact.
+    const NUMBA: Self = Self { name: "numba", folder: "numba", is_for_slopes: false };
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Rapier, Self::RapierConstraints, Self::Box2d, Self::Numba];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rapier => "rapier",
-            Self::RapierConstraints => "rapier-constraints",
-            Self::Box2d => "box2d",
-            Self::Numba => "numba",
-        }
-    }
-
-    /// Folder of its sources, which ends the name of its program.
-    fn folder(self) -> &'static str {
-        if self == Self::RapierConstraints { Self::Rapier.name() } else { self.name() }
-    }
+    pub const ALL: [Self; 4] = [Self::RAPIER, Self::RAPIER_CONSTRAINTS, Self::BOX2D, Self::NUMBA];
 
     /// Reads a name.
     pub fn parse(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|peer| peer.name() == name)
+        Self::ALL.into_iter().find(|peer| peer.name == name)
     }
 
     /// Whether it can be timed on a model.
     pub fn takes(self, model: &Model) -> bool {
-        match self {
-            Self::Rapier | Self::RapierConstraints | Self::Box2d => matches!(model, Model::Slope(..)),
-            Self::Numba => matches!(model, Model::Continuum(_)),
-        }
+        if self.is_for_slopes { matches!(model, Model::Slope(..)) } else { matches!(model, Model::Continuum(_)) }
     }
 }
 
@@ -227,10 +215,10 @@ fn compare_here(options: &PeerOptions, begin: &mut dyn FnMut(&str)) -> Result<Pe
     };
     let mut ready = Vec::new();
     for &peer in &options.peers {
-        begin(&format!("building {}", peer.name()));
+        begin(&format!("building {}", peer.name));
         match build(peer, options) {
             Ok(command) => ready.push(Built { peer, command }),
-            Err(why) => report.left_out.push(format!("{}: {why}", peer.name())),
+            Err(why) => report.left_out.push(format!("{}: {why}", peer.name)),
         }
     }
     for model in &options.models {
@@ -326,7 +314,7 @@ fn rounds(
             let Some(so_far) = &mut results[k] else { continue };
             let answer = if k == 0 { Ok(task.own(model)?) } else { ask(&others[k - 1].command, &argument) };
             if let Err(why) = answer.and_then(|answer| so_far.add(answer, &task)) {
-                let name = if k == 0 { "enmm" } else { others[k - 1].peer.name() };
+                let name = if k == 0 { "enmm" } else { others[k - 1].peer.name };
                 left_out.push(format!("{name} on {model}: {why}"));
                 results[k] = None;
             }
@@ -354,8 +342,8 @@ fn ask(command: &[PathBuf], input: &Path) -> Result<Answer, String> {
 
 /// Builds a program; returns what begins its command line.
 fn build(peer: Peer, options: &PeerOptions) -> Result<Vec<PathBuf>, String> {
-    let sources = options.sources.join(peer.folder());
-    if peer == Peer::Numba {
+    let sources = options.sources.join(peer.folder);
+    if peer == Peer::NUMBA {
         let python = environment(&sources, &options.builds.join("venv"))?;
         return Ok(vec![python, sources.join("elements.py")]);
     }
@@ -370,9 +358,9 @@ fn build(peer: Peer, options: &PeerOptions) -> Result<Vec<PathBuf>, String> {
     }
     build.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", "-C target-cpu=native");
     output(build.arg("--target-dir").arg(&options.builds))?;
-    let program = format!("enmm-peer-{}{}", peer.folder(), std::env::consts::EXE_SUFFIX);
+    let program = format!("enmm-peer-{}{}", peer.folder, std::env::consts::EXE_SUFFIX);
     let mut command = vec![options.builds.join("release").join(program)];
-    command.extend((peer == Peer::RapierConstraints).then(|| "constraints".into()));
+    command.extend((peer == Peer::RAPIER_CONSTRAINTS).then(|| "constraints".into()));
     Ok(command)
 }
 
@@ -416,7 +404,7 @@ mod tests {
 
     #[test]
     fn names_are_read_back() {
-        assert!(Peer::ALL.into_iter().all(|peer| Peer::parse(peer.name()) == Some(peer)));
+        assert!(Peer::ALL.into_iter().all(|peer| Peer::parse(peer.name) == Some(peer)));
         assert_eq!(Peer::parse("all"), None);
     }
 

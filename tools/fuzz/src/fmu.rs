@@ -33,9 +33,6 @@ impl Drop for Fmu {
 
 impl Fmu {
     /// The model of a case.
-    ///
-    /// # Errors
-    /// When the case has no model, or its folder cannot be written.
     pub fn new(case: &str, version: Version) -> Result<Self, String> {
         let loaded: LoadedCase = parse_case(case, "case.toml", Path::new("")).map_err(|error| error.to_string())?;
         let model = loaded.cosimulation().map_err(|error| error.to_string())?;
@@ -50,16 +47,36 @@ impl Fmu {
     }
 
     /// A new instance.
-    ///
-    /// # Errors
-    /// When there is none.
     pub fn instance(&self) -> Result<Instance, String> {
         let token = CString::new(self.table.token.as_str()).map_err(|error| error.to_string())?;
+        let folder = self.folder.display();
+        let (name, no) = (c"fuzz".as_ptr(), false);
         let pointer = match self.version {
-            Version::Two => instance2(&token, &self.folder)?,
-            Version::Three => instance3(&token, &self.folder)?,
+            Version::Two => {
+                let uri = CString::new(format!("file://{folder}/resources")).map_err(|error| error.to_string())?;
+                let functions = fmi2::CallbackFunctions::NONE;
+                let (kind, token, uri) = (fmi2::CO_SIMULATION, token.as_ptr(), uri.as_ptr());
+                // SAFETY: texts and functions are there.
+                unsafe { fmi2::fmi2Instantiate(name, kind, token, uri, &raw const functions, 0, 0) }
+            }
+            Version::Three => {
+                let path = CString::new(format!("{folder}/resources/")).map_err(|error| error.to_string())?;
+                let (token, path, at) = (token.as_ptr(), path.as_ptr(), null_mut());
+                // SAFETY: texts are there.
+                unsafe {
+                    fmi3::fmi3InstantiateCoSimulation(name, token, path, no, no, no, no, null(), 0, at, None, None)
+                }
+            }
         };
         if pointer.is_null() { Err("no instance".to_owned()) } else { Ok(Instance { version: self.version, pointer }) }
+    }
+
+    /// The time of an instance, where it tells one.
+    pub fn time(&self, instance: Instance) -> Option<f64> {
+        let reference = self.table.variables.iter().find(|v| v.name == "time").map_or(0, |v| v.reference);
+        let mut buffer = Buffer::new(1);
+        let is_told = instance.get(Type::Real, &[reference], &mut buffer, 1) == Status::Ok;
+        is_told.then(|| buffer.numbers(1)[0])
     }
 
     /// Outputs that must be finite: all but the net force over an applied one that may be next to nothing.
@@ -71,22 +88,14 @@ impl Fmu {
     }
 }
 
-fn instance2(token: &CString, folder: &Path) -> Result<*mut c_void, String> {
-    let uri = CString::new(format!("file://{}/resources", folder.display())).map_err(|error| error.to_string())?;
-    let functions = fmi2::CallbackFunctions::NONE;
-    let (name, kind) = (c"fuzz".as_ptr(), fmi2::CO_SIMULATION);
-    // SAFETY: texts and functions are there.
-    Ok(unsafe { fmi2::fmi2Instantiate(name, kind, token.as_ptr(), uri.as_ptr(), &raw const functions, 0, 0) })
-}
-
-fn instance3(token: &CString, folder: &Path) -> Result<*mut c_void, String> {
-    let path = CString::new(format!("{}/resources/", folder.display())).map_err(|error| error.to_string())?;
-    let (name, token, path) = (c"fuzz".as_ptr(), token.as_ptr(), path.as_ptr());
-    let no = false;
-    // SAFETY: texts are there.
-    Ok(unsafe {
-        fmi3::fmi3InstantiateCoSimulation(name, token, path, no, no, no, no, null(), 0, null_mut(), None, None)
-    })
+/// The call of the version of an instance.
+macro_rules! by_version {
+    ($instance:ident, $two:expr, $three:expr) => {
+        match $instance.version {
+            Version::Two => $two,
+            Version::Three => $three,
+        }
+    };
 }
 
 /// An instance; it may be used when it is dead.
@@ -101,50 +110,40 @@ impl Instance {
     /// Sets the experiment up, which FMI 3 does on entering the initialization mode.
     pub fn set_up(self, start: f64, stop: Option<f64>) -> Status {
         let (is, stop) = (i32::from(stop.is_some()), stop.unwrap_or_default());
-        match self.version {
-            Version::Two => fmi2::fmi2SetupExperiment(self.pointer, 0, 0.0, start, is, stop),
-            Version::Three => Status::Ok,
-        }
+        by_version!(self, fmi2::fmi2SetupExperiment(self.pointer, 0, 0.0, start, is, stop), Status::Ok)
     }
 
     /// Enters the initialization mode.
     pub fn enter(self, start: f64) -> Status {
-        match self.version {
-            Version::Two => fmi2::fmi2EnterInitializationMode(self.pointer),
-            Version::Three => fmi3::fmi3EnterInitializationMode(self.pointer, false, 0.0, start, false, 0.0),
-        }
+        by_version!(
+            self,
+            fmi2::fmi2EnterInitializationMode(self.pointer),
+            fmi3::fmi3EnterInitializationMode(self.pointer, false, 0.0, start, false, 0.0)
+        )
     }
 
     /// Leaves the initialization mode.
     pub fn exit(self) -> Status {
-        match self.version {
-            Version::Two => fmi2::fmi2ExitInitializationMode(self.pointer),
-            Version::Three => fmi3::fmi3ExitInitializationMode(self.pointer),
-        }
+        by_version!(
+            self,
+            fmi2::fmi2ExitInitializationMode(self.pointer),
+            fmi3::fmi3ExitInitializationMode(self.pointer)
+        )
     }
 
     /// Terminates.
     pub fn terminate(self) -> Status {
-        match self.version {
-            Version::Two => fmi2::fmi2Terminate(self.pointer),
-            Version::Three => fmi3::fmi3Terminate(self.pointer),
-        }
+        by_version!(self, fmi2::fmi2Terminate(self.pointer), fmi3::fmi3Terminate(self.pointer))
     }
 
     /// Resets.
     pub fn reset(self) -> Status {
-        match self.version {
-            Version::Two => fmi2::fmi2Reset(self.pointer),
-            Version::Three => fmi3::fmi3Reset(self.pointer),
-        }
+        by_version!(self, fmi2::fmi2Reset(self.pointer), fmi3::fmi3Reset(self.pointer))
     }
 
     /// Frees the instance.
     pub fn free(self) {
-        match self.version {
-            Version::Two => fmi2::fmi2FreeInstance(self.pointer),
-            Version::Three => fmi3::fmi3FreeInstance(self.pointer),
-        }
+        by_version!(self, fmi2::fmi2FreeInstance(self.pointer), fmi3::fmi3FreeInstance(self.pointer))
     }
 
     /// Status, and the time that FMI 3 tells.
@@ -206,10 +205,11 @@ impl Instance {
         let (p, r, n, orders) = (self.pointer, references.as_ptr(), references.len(), vec![order; references.len()]);
         // SAFETY: so many references, orders and words are there.
         unsafe {
-            match self.version {
-                Version::Two => fmi2::fmi2GetRealOutputDerivatives(p, r, n, orders.as_ptr(), buffer.pointer()),
-                Version::Three => fmi3::fmi3GetOutputDerivatives(p, r, n, orders.as_ptr(), buffer.pointer(), n),
-            }
+            by_version!(
+                self,
+                fmi2::fmi2GetRealOutputDerivatives(p, r, n, orders.as_ptr(), buffer.pointer()),
+                fmi3::fmi3GetOutputDerivatives(p, r, n, orders.as_ptr(), buffer.pointer(), n)
+            )
         }
     }
 
@@ -217,29 +217,20 @@ impl Instance {
     pub fn save(self, state: &mut *mut c_void) -> Status {
         // SAFETY: room for a state.
         unsafe {
-            match self.version {
-                Version::Two => fmi2::fmi2GetFMUstate(self.pointer, state),
-                Version::Three => fmi3::fmi3GetFMUState(self.pointer, state),
-            }
+            by_version!(self, fmi2::fmi2GetFMUstate(self.pointer, state), fmi3::fmi3GetFMUState(self.pointer, state))
         }
     }
 
     /// Restores a state.
     pub fn restore(self, state: *mut c_void) -> Status {
-        match self.version {
-            Version::Two => fmi2::fmi2SetFMUstate(self.pointer, state),
-            Version::Three => fmi3::fmi3SetFMUState(self.pointer, state),
-        }
+        by_version!(self, fmi2::fmi2SetFMUstate(self.pointer, state), fmi3::fmi3SetFMUState(self.pointer, state))
     }
 
     /// Frees a state.
     pub fn free_state(self, state: &mut *mut c_void) -> Status {
         // SAFETY: room for a state.
         unsafe {
-            match self.version {
-                Version::Two => fmi2::fmi2FreeFMUstate(self.pointer, state),
-                Version::Three => fmi3::fmi3FreeFMUState(self.pointer, state),
-            }
+            by_version!(self, fmi2::fmi2FreeFMUstate(self.pointer, state), fmi3::fmi3FreeFMUState(self.pointer, state))
         }
     }
 
@@ -252,10 +243,11 @@ impl Instance {
         // SAFETY: room for a size, then for so many bytes.
         unsafe {
             let (p, out) = (self.pointer, &raw mut size);
-            let status = match self.version {
-                Version::Two => fmi2::fmi2SerializedFMUstateSize(p, state, out),
-                Version::Three => fmi3::fmi3SerializedFMUStateSize(p, state, out),
-            };
+            let status = by_version!(
+                self,
+                fmi2::fmi2SerializedFMUstateSize(p, state, out),
+                fmi3::fmi3SerializedFMUStateSize(p, state, out)
+            );
             let mut bytes = vec![0_u8; size];
             let status = match self.version {
                 _ if status != Status::Ok => status,
@@ -271,10 +263,11 @@ impl Instance {
         let (mut state, p, n) = (null_mut(), self.pointer, bytes.len());
         // SAFETY: so many bytes, and room for a state.
         let status = unsafe {
-            match self.version {
-                Version::Two => fmi2::fmi2DeSerializeFMUstate(p, bytes.as_ptr().cast(), n, &raw mut state),
-                Version::Three => fmi3::fmi3DeserializeFMUState(p, bytes.as_ptr(), n, &raw mut state),
-            }
+            by_version!(
+                self,
+                fmi2::fmi2DeSerializeFMUstate(p, bytes.as_ptr().cast(), n, &raw mut state),
+                fmi3::fmi3DeserializeFMUState(p, bytes.as_ptr(), n, &raw mut state)
+            )
         };
         (status, state)
     }

@@ -42,34 +42,13 @@ impl Random {
 
     /// A number of the kind that breaks things.
     pub fn wild(&mut self) -> f64 {
-        const WILD: [f64; 22] = [
-            0.0,
-            -0.0,
-            1.0,
-            -1.0,
-            0.5,
-            1e-300,
-            5e-324,
-            1e-12,
-            1e-6,
-            1e3,
-            1e6,
-            1e12,
-            -1e12,
-            1e15,
-            -1e15,
-            1e150,
-            1e300,
-            f64::MAX,
-            f64::MIN,
-            f64::INFINITY,
-            f64::NEG_INFINITY,
-            f64::NAN,
-        ];
+        const SIZES: [f64; 17] =
+            [0.0, -0.0, 1.0, -1.0, 0.5, 1e-300, 5e-324, 1e-12, 1e-6, 1e3, 1e6, 1e12, -1e12, 1e15, -1e15, 1e150, 1e300];
+        const ENDS: [f64; 5] = [f64::MAX, f64::MIN, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
         match self.below(5) {
             0 => f64::from_bits(self.word()),
             1 => self.between(-10.0, 10.0),
-            _ => self.pick(&WILD),
+            _ => self.pick(&[&SIZES[..], &ENDS].concat()),
         }
     }
 }

@@ -34,9 +34,6 @@ pub struct Comparison<'a> {
 
 impl<'a> Comparison<'a> {
     /// Reads `OLD NEW [--models NAMES] [--rounds N] [--threads N]`.
-    ///
-    /// # Errors
-    /// When it is something else.
     pub fn read(words: &'a [&'a str]) -> Result<Self, String> {
         let [old, new, rest @ ..] = words else { return Err("ab needs two programs: OLD NEW".to_owned()) };
         let (old, new) = (Path::new(*old), Path::new(*new));
@@ -53,9 +50,6 @@ impl<'a> Comparison<'a> {
     }
 
     /// Runs both programs in turn and prints the median of each part and of the ratios of the rounds.
-    ///
-    /// # Errors
-    /// When a program does not run, or prints something else than `enmm bench --json` does.
     pub fn run(&self, repository: &Repository) -> Result<(), String> {
         println!("| model | part | old ms | new ms | old / new | range |\n|---|---|---|---|---|---|");
         for model in self.models.split(',') {

@@ -1,37 +1,16 @@
 //! The site of the documents, and what of it the program writes.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::formulas::rendered;
-use crate::repository::{self, Repository};
+use crate::repository::{self, Repository, write};
 
 /// The version of mdBook that builds the site.
 const MDBOOK: &str = "0.5.4";
 /// Folders outside the documents that pages link to.
 const LINKED: [&str; 6] = ["examples", "ffi/c", "ffi/cpp", "ffi/python", "include", "python_tests"];
-/// A run that draws contours.
-const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
-/// Pictures of the tutorials: command, case, picture of its results, and its name in `docs/book/pictures`.
-const PICTURES: [[&str; 4]; 11] = [
-    ["run", "road_cut", "stage2_joints.png", "road_cut_joints.png"],
-    [CONTOURS, "road_cut", "stage1_displacement_contours.png", "road_cut_displacement.png"],
-    [CONTOURS, "road_cut", "stage2_mean_stress_contours.png", "road_cut_mean_stress.png"],
-    ["fos", "road_cut", "fos.png", "road_cut_fos.png"],
-    ["fos", "road_cut", "failure.png", "road_cut_failure.png"],
-    ["run", "step_path", "stage2_joints.png", "step_path_joints.png"],
-    ["run", "toppling", "stage1_joints.png", "toppling_joints.png"],
-    ["run", "toppling", "deformed.png", "toppling_deformed.png"],
-    ["run", "pit", "deformed.png", "pit_deformed.png"],
-    ["run", "pit", "stage4_joints.png", "pit_joints.png"],
-    ["fos", "pit", "failure.png", "pit_failure.png"],
-];
-
 /// Builds the site into `book/docs` in the target folder, with the files that its pages link to beside it.
-///
-/// # Errors
-/// When mdBook cannot be installed, or does not build the site.
 pub fn build(repository: &Repository) -> Result<(), String> {
     let [site, source] = ["book", "book-source"].map(|name| repository.target.join(name));
     repository::remove(&site)?;
@@ -40,7 +19,7 @@ pub fn build(repository: &Repository) -> Result<(), String> {
     repository::run(build.arg("build").arg(&source).arg("--dest-dir").arg(site.join("docs")))?;
     for folder in LINKED {
         for (name, bytes) in repository::files_of(&repository.root.join(folder))? {
-            write(&site.join(folder).join(name), &bytes)?;
+            write(&site.join(folder).join(name), bytes)?;
         }
     }
     write_indices(&site)?;
@@ -52,7 +31,7 @@ pub fn build(repository: &Repository) -> Result<(), String> {
 fn write_source(repository: &Repository, source: &Path) -> Result<(), String> {
     repository::remove(source)?;
     let settings = repository.root.join("book.toml");
-    write(&source.join("book.toml"), &fs::read(&settings).map_err(|e| format!("{}: {e}", settings.display()))?)?;
+    write(&source.join("book.toml"), repository::read(&settings)?)?;
     for (name, bytes) in repository::files_of(&repository.root.join("docs"))? {
         let bytes = if name.ends_with(".md") {
             let page = String::from_utf8(bytes).map_err(|error| format!("docs/{name}: {error}"))?;
@@ -60,7 +39,7 @@ fn write_source(repository: &Repository, source: &Path) -> Result<(), String> {
         } else {
             bytes
         };
-        write(&source.join("docs").join(name), &bytes)?;
+        write(&source.join("docs").join(name), bytes)?;
     }
     Ok(())
 }
@@ -83,7 +62,7 @@ fn write_indices(site: &Path) -> Result<(), String> {
         let list: String = entries.iter().map(line).collect();
         let head = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
         let page = format!("{head}<title>{folder}</title>\n<h1>{folder}</h1>\n<ul>\n{list}</ul>\n</html>\n");
-        write(&site.join(&folder).join("index.html"), page.as_bytes())?;
+        write(&site.join(&folder).join("index.html"), page)?;
     }
     Ok(())
 }
@@ -102,38 +81,7 @@ fn mdbook(repository: &Repository) -> Result<PathBuf, String> {
 }
 
 /// Writes the reference of the keys from schema, validation and cases.
-///
-/// # Errors
-/// When a key has no example, or the page cannot be written.
 pub fn write_reference(repository: &Repository) -> Result<(), String> {
     let mut test = repository.cargo(&["test", "--package", "enmm-io", "--test", "io", "key_reference"]);
     repository::run(test.env("ENMM_WRITE_REFERENCE", "1"))
-}
-
-/// Runs the cases of the tutorials and copies their pictures to where the pages show them.
-///
-/// # Errors
-/// When a case does not run or a picture is missing.
-pub fn write_pictures(repository: &Repository) -> Result<(), String> {
-    let results = repository.target.join("picture-results");
-    for (k, [command, case, picture, shown]) in PICTURES.into_iter().enumerate() {
-        let first = PICTURES.iter().position(|other| other[..2] == [command, case]).unwrap_or(k);
-        let from = results.join(format!("{case}_{first}"));
-        if first == k {
-            let mut run = repository.command(repository.enmm());
-            run.args(command.split(' ')).arg(format!("examples/cases/{case}.toml"));
-            repository::run(run.arg("-o").arg(&from))?;
-        }
-        let bytes = fs::read(from.join(picture)).map_err(|error| format!("{}: {error}", from.display()))?;
-        write(&repository.root.join("docs/book/pictures").join(shown), &bytes)?;
-        println!("wrote docs/book/pictures/{shown}");
-    }
-    Ok(())
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    let parent = path.parent().unwrap_or(Path::new(""));
-    fs::create_dir_all(parent)
-        .and_then(|()| fs::write(path, bytes))
-        .map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -8,8 +8,9 @@ use crate::counts::Counts;
 use crate::debian;
 use crate::emulator::Emulator;
 use crate::platform::{Cross, Platform};
+use crate::repository::succeeds;
 use crate::repository::{self, Repository};
-use crate::venv::{self, Packages, succeeds};
+use crate::venv::{self, Packages};
 use crate::wheel;
 
 /// Header that C programs need.
@@ -43,9 +44,6 @@ pub fn run(repository: &Repository, platform: &Platform, words: &[&str]) -> Resu
 /// Builds libraries and program for a platform by the profile of tests, compares quick results of that build, on its
 /// emulator, with the golden table, with those of FMUs and a rollback, and calls every function of the C library. Says
 /// what it leaves out where the machine lacks something.
-///
-/// # Errors
-/// When something does not compile or does not run.
 pub fn quick(repository: &Repository, platform: &Platform) -> Result<Counts, String> {
     let purpose = format!("tests for {}", platform.name);
     let Some(cross) = platform.cross.as_ref().filter(|cross| is_ready(cross, &purpose)) else {
@@ -68,26 +66,18 @@ pub fn quick(repository: &Repository, platform: &Platform) -> Result<Counts, Str
     bits::elsewhere(repository, platform, &place.emulator, &place.compile(FMU_HOST, &[])?)
 }
 
-fn provide_compiler(cross: &Cross, purpose: &str) {
+/// Whether standard library and compiler are there, installed where they can be. Says what is missing.
+fn is_ready(cross: &Cross, purpose: &str) -> bool {
     if !cross.has_standard_library() {
         succeeds(Command::new("rustup").args(["target", "add", cross.triple]));
     }
     debian::provide(purpose, cross.compiler_package, || cross.has_compiler());
-}
-
-fn provide_emulator(cross: &Cross, purpose: &str) -> bool {
-    debian::provide(purpose, cross.emulator_packages, || cross.has_emulator())
-}
-
-/// Whether standard library and compiler are there, installed where they can be. Says what is missing.
-fn is_ready(cross: &Cross, purpose: &str) -> bool {
-    provide_compiler(cross, purpose);
     cross.missing().map(|missing| println!("SKIPPED {purpose}: {missing}")).is_none()
 }
 
 /// Whether the emulator is there, installed where Debian's packages can be; says what is left out without it.
 fn has_emulator(cross: &Cross, purpose: &str) -> bool {
-    let is_there = provide_emulator(cross, purpose);
+    let is_there = debian::provide(purpose, cross.emulator_packages, || cross.has_emulator());
     if !is_there {
         let [emulator, packages] = [cross.emulator[0], cross.emulator_packages];
         println!(
@@ -104,7 +94,7 @@ fn build(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<
     let shipped = platform.shipped(repository);
     let copy = |from: &Path| {
         let to = shipped.join(from.file_name().unwrap_or_default());
-        std::fs::copy(from, to).map(|_| ()).map_err(|error| format!("{}: {error}", from.display()))
+        std::fs::copy(from, to).map(|_| ()).map_err(repository::at(from))
     };
     cross.import_library.map_or(Ok(()), |name| copy(&platform.built(repository).join(name)))?;
     copy(&repository.root.join(HEADER))?;
@@ -128,7 +118,8 @@ fn test(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<(
     let place = Place::new(repository, platform, cross)?;
     place.c_library()?;
     let host = place.compile(FMU_HOST, &[])?;
-    for version in place.versions() {
+    // Versions of FMI whose FMUs have a folder for the platform beside that of this machine.
+    for version in ["2", "3"].into_iter().filter(|version| bits::has_folder(platform, version)) {
         place.fmu(version, &host)?;
     }
     if platform.is_windows() {
@@ -149,9 +140,7 @@ struct Place<'a> {
 impl<'a> Place<'a> {
     /// Sets up the emulator, and an empty folder.
     fn new(repository: &'a Repository, platform: &'a Platform, cross: &'a Cross) -> Result<Self, String> {
-        let folder = platform.shipped(repository).join("tests");
-        repository::remove(&folder)?;
-        std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let folder = repository::fresh(platform.shipped(repository).join("tests"))?;
         Ok(Self { repository, platform, cross, emulator: Emulator::of(repository, cross)?, folder })
     }
 
@@ -173,8 +162,8 @@ impl<'a> Place<'a> {
         let checks = self.compile(source, &["-lenmm", "-lm", &format!("-Wl,-rpath,{}", shipped.display())])?;
         let library = self.platform.library("enmm");
         // Windows looks beside the program.
-        std::fs::copy(shipped.join(&library), self.folder.join(&library))
-            .map_err(|error| format!("{library}: {error}"))?;
+        let from = shipped.join(&library);
+        std::fs::copy(&from, self.folder.join(&library)).map_err(repository::at(&from))?;
         repository::run(self.emulator.command(self.repository, checks).arg(case))?;
         println!("the C library does what {source} checks");
         Ok(())
@@ -188,18 +177,13 @@ impl<'a> Place<'a> {
         repository::run(&mut python)
     }
 
-    /// Versions of FMI whose FMUs have a folder for the platform beside that of this machine.
-    fn versions(&self) -> impl Iterator<Item = &'static str> {
-        ["2", "3"].into_iter().filter(|version| bits::has_folder(self.platform, version))
-    }
-
     /// Packs an FMU for both platforms, has FMPy check and run it here, and compares its steps on both platforms.
     fn fmu(&self, version: &str, host: &Path) -> Result<(), String> {
         let packed = self.folder.join(format!("coupled_slope_fmi{version}.fmu"));
         let mut pack = self.repository.command(self.repository.enmm());
         pack.args(["fmu", FMU_CASE, "--fmi", version, "--library"]);
         repository::run(pack.arg(bits::library(self.repository, self.platform, version)).arg("-o").arg(&packed))?;
-        let size = packed.metadata().map_err(|error| format!("{}: {error}", packed.display()))?.len();
+        let size = packed.metadata().map_err(repository::at(&packed))?.len();
         if size > 2 * FMU_SIZE_MAX {
             return Err(format!("{}: has {size} bytes, must have at most {}", packed.display(), 2 * FMU_SIZE_MAX));
         }

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::venv::succeeds;
+use crate::repository::succeeds;
 
 /// Whether a program is there; where Debian's packages can be installed they are installed first.
 pub fn provide(purpose: &str, packages: &str, is_there: impl Fn() -> bool) -> bool {

@@ -5,8 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::platform::Cross;
-use crate::repository::{self, Repository};
-use crate::venv::succeeds;
+use crate::repository::{self, Repository, succeeds};
 
 /// Random numbers for a Wine that lacks the library that has them.
 const RANDOM: &str = "ffi/fmi/tests/c/bcryptprimitives.c";
@@ -20,9 +19,6 @@ pub struct Emulator {
 
 impl Emulator {
     /// Sets up the emulator of a platform, which is installed.
-    ///
-    /// # Errors
-    /// When Wine cannot make its folder.
     pub fn of(repository: &Repository, cross: &Cross) -> Result<Self, String> {
         let mut emulator = Self { words: cross.emulator, variables: Vec::new() };
         if cross.emulator != ["wine"] {

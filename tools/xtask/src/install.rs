@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::repository::Repository;
+use crate::repository::{self, Repository, write};
 
 /// Libraries of the C ABI, and of the FMUs where they have been built.
 const LIBRARIES: [&str; 4] = ["libenmm.so", "libenmm.a", "libenmm_fmi2.so", "libenmm_fmi3.so"];
@@ -12,9 +12,6 @@ const HEADERS: [&str; 2] = ["include/enmm.h", "ffi/cpp/enmm.hpp"];
 const SYSTEM_LIBRARIES: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 
 /// Builds everything and installs it below `prefix`.
-///
-/// # Errors
-/// When something does not build or cannot be copied.
 pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
     repository.build(&["--workspace"])?;
     let from = |name: &str| repository.built().join(name);
@@ -26,81 +23,41 @@ pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
         copy(&repository.root.join(name), &prefix.join("include"))?;
     }
     let version = env!("CARGO_PKG_VERSION");
-    write(&prefix.join("lib/pkgconfig/enmm.pc"), &pkg_config(version))?;
-    write(&prefix.join("lib/cmake/enmm/enmmConfig.cmake"), CMAKE)?;
-    write(&prefix.join("lib/cmake/enmm/enmmConfigVersion.cmake"), &cmake_version(version))?;
+    for (name, text, mark) in [
+        ("pkgconfig/enmm.pc", PKG_CONFIG, " "),
+        ("cmake/enmm/enmmConfig.cmake", CMAKE, ";"),
+        ("cmake/enmm/enmmConfigVersion.cmake", CMAKE_VERSION, ";"),
+    ] {
+        write(&prefix.join("lib").join(name), filled(text, version, mark))?;
+    }
     println!("installed in {}", prefix.display());
     Ok(())
 }
 
 /// The file of pkg-config; its prefix is where it lies, so that the whole may be moved.
-fn pkg_config(version: &str) -> String {
-    [
-        "prefix=${pcfiledir}/../..",
-        "libdir=${prefix}/lib",
-        "includedir=${prefix}/include",
-        "",
-        "Name: enmm",
-        "Description: Explicit numerical manifold method for jointed rock",
-        &format!("Version: {version}"),
-        "Libs: -L${libdir} -lenmm",
-        &format!("Libs.private: {SYSTEM_LIBRARIES}"),
-        "Cflags: -I${includedir}",
-        "",
-    ]
-    .join("\n")
-}
+const PKG_CONFIG: &str = include_str!("install/enmm.pc");
+/// The targets for CMake.
+const CMAKE: &str = include_str!("install/enmmConfig.cmake");
 
-const CMAKE: &str = r#"# find_package(enmm) gives the targets enmm::enmm (shared) and enmm::static, with their headers.
-get_filename_component(_enmm_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
-if(NOT TARGET enmm::enmm)
-  add_library(enmm::enmm SHARED IMPORTED)
-  set_target_properties(enmm::enmm PROPERTIES
-    IMPORTED_LOCATION "${_enmm_prefix}/lib/libenmm.so"
-    IMPORTED_SONAME "libenmm.so"
-    INTERFACE_INCLUDE_DIRECTORIES "${_enmm_prefix}/include")
-  add_library(enmm::static STATIC IMPORTED)
-  set_target_properties(enmm::static PROPERTIES
-    IMPORTED_LOCATION "${_enmm_prefix}/lib/libenmm.a"
-    INTERFACE_LINK_LIBRARIES "@SYSTEM_LIBRARIES@"
-    INTERFACE_INCLUDE_DIRECTORIES "${_enmm_prefix}/include")
-endif()
-unset(_enmm_prefix)
-"#;
+/// The version file for CMake.
+const CMAKE_VERSION: &str = include_str!("install/enmmConfigVersion.cmake");
 
-/// A version file: the same major version and, before 1.0, the same minor one.
-fn cmake_version(version: &str) -> String {
+/// A file with the version, its series (the same major version and, before 1.0, the same minor one) and the libraries of
+/// the system, which a mark parts.
+fn filled(text: &str, version: &str, mark: &str) -> String {
     let mut parts = version.split('.');
     let (major, minor) = (parts.next().unwrap_or("0"), parts.next().unwrap_or("0"));
     let series = if major == "0" { format!("0.{minor}") } else { major.to_owned() };
-    format!(
-        r#"set(PACKAGE_VERSION "{version}")
-if(PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION OR NOT "${{PACKAGE_FIND_VERSION}}." MATCHES "^{series}[.]")
-  set(PACKAGE_VERSION_COMPATIBLE FALSE)
-else()
-  set(PACKAGE_VERSION_COMPATIBLE TRUE)
-  if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)
-    set(PACKAGE_VERSION_EXACT TRUE)
-  endif()
-endif()
-"#
-    )
+    let text = text.replace("@VERSION@", version).replace("@SERIES@", &series);
+    text.replace("@SYSTEM_LIBRARIES@", &SYSTEM_LIBRARIES.replace(' ', mark))
 }
 
 fn copy(from: &Path, folder: &Path) -> Result<(), String> {
-    let name = from.file_name().ok_or("a path without a name")?;
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let to = folder.join(from.file_name().ok_or("a path without a name")?);
+    repository::make(folder)?;
     // A library that a program has open is replaced, not written over.
-    let to = folder.join(name);
     let _ = std::fs::remove_file(&to);
-    std::fs::copy(from, &to).map(|_| ()).map_err(|error| format!("{}: {error}", from.display()))
-}
-
-fn write(to: &Path, text: &str) -> Result<(), String> {
-    let text = text.replace("@SYSTEM_LIBRARIES@", &SYSTEM_LIBRARIES.replace(' ', ";"));
-    let folder = to.parent().ok_or("a path without a folder")?;
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    std::fs::write(to, text).map_err(|error| format!("{}: {error}", to.display()))
+    std::fs::copy(from, &to).map(|_| ()).map_err(repository::at(from))
 }
 
 #[cfg(test)]
@@ -109,8 +66,8 @@ mod tests {
 
     #[test]
     fn versions_of_a_series_agree() {
-        assert!(cmake_version("0.1.0").contains(r#"MATCHES "^0.1[.]""#));
-        assert!(cmake_version("2.3.4").contains(r#"MATCHES "^2[.]""#));
-        assert!(pkg_config("0.1.0").contains("\nVersion: 0.1.0\n"));
+        assert!(filled(CMAKE_VERSION, "0.1.0", ";").contains(r#"MATCHES "^0.1[.]""#));
+        assert!(filled(CMAKE_VERSION, "2.3.4", ";").contains(r#"MATCHES "^2[.]""#));
+        assert!(filled(PKG_CONFIG, "0.1.0", " ").contains("\nVersion: 0.1.0\n"));
     }
 }

@@ -4,8 +4,7 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::repository::{self, Repository};
-use crate::venv::succeeds;
+use crate::repository::{self, Repository, succeeds};
 
 /// Names of files, tools and folders of a platform.
 pub struct Platform {
@@ -81,8 +80,7 @@ pub const WINDOWS: Platform = Platform {
     library: ["", ".dll"],
     program: ".exe",
     strip: Some(&["x86_64-w64-mingw32-strip", "--strip-unneeded"]),
-    cargo: "",
-    profile: "release",
+    ..HERE
 };
 
 /// Linux on ARM.
@@ -103,8 +101,7 @@ pub const AARCH64: Platform = Platform {
     library: ["lib", ".so"],
     program: "",
     strip: Some(&["aarch64-linux-gnu-strip", "--strip-unneeded"]),
-    cargo: "",
-    profile: "release",
+    ..HERE
 };
 
 /// Windows as `cargo xtask test --all` builds it.
@@ -166,11 +163,8 @@ impl Platform {
     }
 
     /// Copies a binary without its symbols and line tables, which only developers need.
-    ///
-    /// # Errors
-    /// When the file is missing, or its symbols cannot be removed.
     pub fn strip(&self, repository: &Repository, from: &Path, to: &Path) -> Result<(), String> {
-        std::fs::copy(from, to).map_err(|error| format!("{}: {error}", from.display()))?;
+        std::fs::copy(from, to).map_err(repository::at(from))?;
         let Some([program, options @ ..]) = self.strip else { return Ok(()) };
         repository::run(repository.command(program).args(options).arg(to))
     }
@@ -220,18 +214,9 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_named_with_its_remedy() {
-        let cross = Cross {
-            triple: "no-such-target",
-            compiler: "no-such-compiler",
-            settings: &[],
-            alone: &[],
-            compiler_package: "the-package",
-            wheel: "",
-            fmi: "",
-            import_library: None,
-            emulator: &[],
-            emulator_packages: "",
-        };
+        let known = AARCH64.cross.expect("a cross build");
+        let (triple, compiler, compiler_package) = ("no-such-target", "no-such-compiler", "the-package");
+        let cross = Cross { triple, compiler, compiler_package, ..known };
         let told = cross.missing().expect("something");
         assert!(told.contains("`rustup target add no-such-target`"), "{told}");
         assert!(told.contains("no-such-compiler (Debian: `apt-get install the-package`)"), "{told}");

@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::counts::{self, Counts};
 use crate::debian;
 use crate::platform::HERE;
-use crate::repository::{self, Repository};
+use crate::repository::{self, Repository, succeeds};
 use crate::venv::{self, Packages};
 use crate::wheel;
 
@@ -67,23 +67,14 @@ impl Share {
             Self::Ensembles => vec![ENSEMBLES],
         }
     }
-
-    fn packages(self) -> Packages {
-        if self == Self::Usual { Packages::Usual } else { Packages::All }
-    }
 }
 
 /// Runs the short case, then pytest over a share of the tests.
-///
-/// # Errors
-/// When the environment cannot be made or the case does not run.
 pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     let results = repository.target.join("python-results");
-    if results.exists() {
-        std::fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
-    }
+    repository::remove(&results)?;
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
-    let mut pytest = venv::command(repository, share.packages())?;
+    let mut pytest = venv::command(repository, if share == Share::Usual { Packages::Usual } else { Packages::All })?;
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "-n", WORKERS, "--dist", "loadfile"]);
     pytest.args(share.arguments());
     if share == Share::Ensembles {
@@ -106,25 +97,17 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
 /// Installs programs and libraries that a few tests need, where Debian's packages can be; without them these tests skip
 /// themselves.
 pub fn install(repository: &Repository) {
-    provide_drawing(repository);
-    provide_browser();
-}
-
-fn provide_drawing(repository: &Repository) {
     let load = ["-c", "import ctypes; ctypes.CDLL('libEGL.so.1')"];
-    let draws = || venv::command(repository, Packages::All).is_ok_and(|mut python| venv::succeeds(python.args(load)));
+    let draws = || venv::command(repository, Packages::All).is_ok_and(|mut python| succeeds(python.args(load)));
     debian::provide(DRAWING_TEST, "libegl1 libgl1-mesa-dri", draws);
-}
-
-fn provide_browser() {
-    let found = || BROWSERS.iter().any(|name| venv::succeeds(Command::new(name).arg("--version")));
-    debian::provide(BROWSER_TEST, "chromium", found);
+    let browses = || BROWSERS.iter().any(|name| succeeds(Command::new(name).arg("--version")));
+    debian::provide(BROWSER_TEST, "chromium", browses);
 }
 
 /// Packs the FMUs of the tests; returns their folder.
 fn pack(repository: &Repository) -> Result<PathBuf, String> {
     let folder = repository.target.join("fmus");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    repository::make(&folder)?;
     for case in FMUS {
         for version in ["2", "3"] {
             let mut enmm = repository.command(repository.enmm());

@@ -28,9 +28,6 @@ pub struct Repository {
 
 impl Repository {
     /// Reads the paths from cargo.
-    ///
-    /// # Errors
-    /// When `cargo metadata` fails or names no target directory.
     pub fn find(profile: Profile) -> Result<Self, String> {
         let manifest = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
         let root = Path::new(&manifest).ancestors().nth(2).ok_or("xtask has no parent directory")?.to_owned();
@@ -38,15 +35,12 @@ impl Repository {
         let mut ask = Command::new(&cargo);
         ask.args(["metadata", "--no-deps", "--format-version", "1"]).current_dir(&root);
         let answer = ask.output().map_err(|error| format!("cargo metadata: {error}"))?;
-        let target = json_string(&String::from_utf8_lossy(&answer.stdout), "target_directory");
-        let target = target.ok_or("cargo metadata names no target_directory")?.into();
+        let told: serde_json::Value = serde_json::from_slice(&answer.stdout).unwrap_or_default();
+        let target = told["target_directory"].as_str().ok_or("cargo metadata names no target_directory")?.into();
         Ok(Self { root, target, profile, cargo })
     }
 
     /// Builds packages, as `args` of cargo name them, by the profile.
-    ///
-    /// # Errors
-    /// When one does not build.
     pub fn build(&self, args: &[&str]) -> Result<(), String> {
         let release: &[&str] = if self.profile == Profile::Shipped { &["--release"] } else { &[] };
         run(self.cargo(&["build"]).args(release).args(args))
@@ -105,12 +99,15 @@ impl Repository {
 }
 
 /// Runs `command` to its end with its output shown.
-///
-/// # Errors
-/// When it cannot start or exits with another status than 0.
 pub fn run(command: &mut Command) -> Result<(), String> {
     let status = command.status().map_err(|error| cannot_start(command, &error))?;
     if status.success() { Ok(()) } else { Err(format!("{} ended with {status}", name(command))) }
+}
+
+/// Whether a command ends well; its output is left out.
+pub fn succeeds(command: &mut Command) -> bool {
+    let command = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
 }
 
 /// A command that runs beside others, and what it has printed so far.
@@ -121,9 +118,6 @@ pub struct Beside {
 }
 
 /// Starts `command`, which prints into the file `printed`.
-///
-/// # Errors
-/// When it cannot start, or the file cannot be written.
 pub fn start(mut command: Command, printed: PathBuf) -> Result<Beside, String> {
     let problem = |error: std::io::Error| format!("{}: {error}", printed.display());
     let file = File::create(&printed).map_err(problem)?;
@@ -134,9 +128,6 @@ pub fn start(mut command: Command, printed: PathBuf) -> Result<Beside, String> {
 
 impl Beside {
     /// Waits for its end and shows what it printed.
-    ///
-    /// # Errors
-    /// When it ended with another status than 0.
     pub fn finish(mut self) -> Result<(), String> {
         let status = self.child.wait().map_err(|error| cannot_start(&self.command, &error))?;
         print!("{}", fs::read_to_string(&self.printed).unwrap_or_default());
@@ -145,9 +136,6 @@ impl Beside {
 }
 
 /// Runs `command`, shows its standard output and returns it by lines, with whether it succeeded.
-///
-/// # Errors
-/// When it cannot start.
 pub fn run_and_listen(command: &mut Command) -> Result<(Vec<String>, bool), String> {
     let mut child = command.stdout(Stdio::piped()).spawn().map_err(|error| cannot_start(command, &error))?;
     let mut lines = Vec::new();
@@ -164,9 +152,6 @@ pub fn run_and_listen(command: &mut Command) -> Result<(Vec<String>, bool), Stri
 }
 
 /// Runs `command` and returns its standard output.
-///
-/// # Errors
-/// When it cannot start or exits with another status than 0.
 pub fn capture(command: &mut Command) -> Result<Vec<u8>, String> {
     let output = command.stderr(Stdio::inherit()).output().map_err(|error| cannot_start(command, &error))?;
     if output.status.success() {
@@ -193,10 +178,34 @@ pub fn program(path: &Path) -> PathBuf {
     std::path::absolute(&found).unwrap_or(found)
 }
 
+/// A problem with a file or a folder.
+pub fn at(path: &Path) -> impl Fn(std::io::Error) -> String + '_ {
+    move |error| format!("{}: {error}", path.display())
+}
+
+/// Makes a folder, with those in which it lies.
+pub fn make(folder: &Path) -> Result<(), String> {
+    fs::create_dir_all(folder).map_err(at(folder))
+}
+
+/// An empty folder, without what an earlier run has left there.
+pub fn fresh(folder: PathBuf) -> Result<PathBuf, String> {
+    remove(&folder)?;
+    make(&folder).map(|()| folder)
+}
+
+/// Reads a file.
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(at(path))
+}
+
+/// Writes a file, in a folder that is made if it is not there.
+pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), String> {
+    make(path.parent().unwrap_or(Path::new("")))?;
+    fs::write(path, bytes).map_err(at(path))
+}
+
 /// Removes a folder or a file, if there is one.
-///
-/// # Errors
-/// When the file system refuses it.
 pub fn remove(path: &Path) -> Result<(), String> {
     let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     match removed {
@@ -206,9 +215,6 @@ pub fn remove(path: &Path) -> Result<(), String> {
 }
 
 /// All files below a folder but hidden ones, which a run that was killed may leave half written.
-///
-/// # Errors
-/// When the file system refuses it.
 pub fn files_of(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut files = BTreeMap::new();
     let mut folders = vec![(folder.to_owned(), String::new())];
@@ -227,20 +233,6 @@ pub fn files_of(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, String> {
     Ok(files)
 }
 
-/// Value of the first string `key` in a JSON text.
-fn json_string(text: &str, key: &str) -> Option<String> {
-    let (_, rest) = text.split_once(&format!("\"{key}\":"))?;
-    let mut letters = rest.trim_start().strip_prefix('"')?.chars();
-    let mut value = String::new();
-    loop {
-        match letters.next()? {
-            '"' => return Some(value),
-            '\\' => value.push(letters.next()?),
-            letter => value.push(letter),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -255,13 +247,5 @@ mod tests {
             assert_eq!(program(&given), wanted, "{}", given.display());
         }
         remove(&place).expect("a folder to remove");
-    }
-
-    #[test]
-    fn json_string_takes_the_value_without_escapes() {
-        let text = r#"{"version":1,"target_directory":"C:\\work\\target","x":""}"#;
-        assert_eq!(json_string(text, "target_directory").as_deref(), Some(r"C:\work\target"));
-        assert_eq!(json_string(text, "version"), None);
-        assert_eq!(json_string(text, "absent"), None);
     }
 }

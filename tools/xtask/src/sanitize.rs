@@ -5,9 +5,9 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Instant;
 
-use crate::repository::{self, Repository};
+use crate::repository::{self, Repository, succeeds};
+use crate::steps::{Verdict, attempt};
 
 const SMALL: &str = "ffi/capi/tests/cases/small.toml";
 /// Hosts in C with their arguments. Left out are the one that counts its own memory, where valgrind's would count as
@@ -29,12 +29,6 @@ const HOST_FLAGS: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-re
 /// A flood is a find, as without the sanitizer, which takes too much address space for a limit of that.
 const ASAN_OPTIONS: &str = "detect_leaks=1:hard_rss_limit_mb=4096:allocator_may_return_null=1";
 
-/// Verdict of a tool.
-enum Verdict {
-    Clean(String),
-    Missing(&'static str),
-}
-
 /// Name of a tool with what it looks at, and how it is run.
 type Tool = (&'static str, fn(&Repository) -> Result<Verdict, String>);
 
@@ -47,49 +41,26 @@ const TOOLS: [Tool; 6] = [
     ("Miri, handle tables", tables_in_miri),
 ];
 
-/// Runs all tools that are there; fails when one finds something.
-///
-/// # Errors
-/// When a tool finds something.
-pub fn run(repository: &Repository) -> Result<(), String> {
-    run_tools(repository, &TOOLS)
-}
-
-/// The same with those that look at the hosts in C and need no build of their own.
-///
-/// # Errors
-/// A finding of a tool.
-pub fn over_hosts(repository: &Repository) -> Result<(), String> {
-    run_tools(repository, &TOOLS[..2])
-}
-
-fn run_tools(repository: &Repository, tools: &[Tool]) -> Result<(), String> {
+/// Runs all tools that are there, or those alone that look at the hosts in C and need no build of their own; fails when
+/// one finds something.
+pub fn run(repository: &Repository, hosts_alone: bool) -> Result<(), String> {
+    let tools = if hosts_alone { &TOOLS[..2] } else { &TOOLS[..] };
     let mut bad = Vec::new();
     for &(name, act) in tools {
-        let start = Instant::now();
-        let verdict = act(repository);
-        let seconds = start.elapsed().as_secs_f64();
-        match verdict {
-            Ok(Verdict::Clean(seen)) => println!("clean    {seconds:>6.1} s  {name}: {seen}"),
-            Ok(Verdict::Missing(why)) => println!("left out {seconds:>6.1} s  {name}: {why}"),
-            Err(found) => {
-                println!("FOUND    {seconds:>6.1} s  {name}: {found}");
-                bad.push(name);
-            }
+        if attempt(["clean", "FOUND"], name, || act(repository)) == Some(false) {
+            bad.push(name);
         }
     }
     if bad.is_empty() { Ok(()) } else { Err(format!("something was found by {}: see above", bad.join("; "))) }
 }
 
-fn is_there(program: &str, arguments: &[&str]) -> bool {
-    let mut ask = Command::new(program);
-    ask.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    ask.status().is_ok_and(|status| status.success())
+fn missing(what: &str) -> Result<Verdict, String> {
+    Ok(Verdict::LeftOut(what.to_owned()))
 }
 
 fn valgrind(repository: &Repository) -> Result<Verdict, String> {
-    if !is_there("valgrind", &["--version"]) {
-        return Ok(Verdict::Missing("valgrind is not there (Debian: apt-get install valgrind)"));
+    if !succeeds(Command::new("valgrind").arg("--version")) {
+        return missing("valgrind is not there (Debian: apt-get install valgrind)");
     }
     let libraries = libraries(repository)?;
     for (source, arguments) in HOSTS {
@@ -98,7 +69,7 @@ fn valgrind(repository: &Repository) -> Result<Verdict, String> {
         watched.args(VALGRIND).arg(program).args(arguments).stdout(Stdio::null());
         repository::run(&mut watched)?;
     }
-    Ok(Verdict::Clean(format!("{} programs", HOSTS.len())))
+    Ok(Verdict::Good(format!("{} programs", HOSTS.len())))
 }
 
 /// The hosts with address and undefined-behaviour sanitizers, which see what the library reads and writes by functions
@@ -107,14 +78,14 @@ fn hosts(repository: &Repository) -> Result<Verdict, String> {
     let libraries = libraries(repository)?;
     for (k, (source, arguments)) in HOSTS.into_iter().enumerate() {
         let program = match compile(repository, source, &libraries, &HOST_FLAGS) {
-            Err(_) if k == 0 => return Ok(Verdict::Missing("the C compiler makes no programs with sanitizers")),
+            Err(_) if k == 0 => return missing("the C compiler makes no programs with sanitizers"),
             compiled => compiled?,
         };
         let mut watched = repository.command(program);
         watched.env("ASAN_OPTIONS", "detect_leaks=1").args(arguments).stdout(Stdio::null());
         repository::run(&mut watched)?;
     }
-    Ok(Verdict::Clean(format!("{} programs", HOSTS.len())))
+    Ok(Verdict::Good(format!("{} programs", HOSTS.len())))
 }
 
 /// Builds the libraries; returns their folder.
@@ -126,7 +97,7 @@ fn libraries(repository: &Repository) -> Result<PathBuf, String> {
 /// Compiles a host in C against the library as it is built.
 fn compile(repository: &Repository, source: &str, libraries: &Path, flags: &[&str]) -> Result<PathBuf, String> {
     let folder = repository.target.join("sanitize-hosts");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    repository::make(&folder)?;
     let program = folder.join(Path::new(source).file_stem().unwrap_or_default());
     let mut cc = repository.command(std::env::var_os("CC").unwrap_or_else(|| "cc".into()));
     cc.args(flags).args(["-std=c99", "-g", "-O1", "-Iinclude", source, "-o"]).arg(&program).arg("-L").arg(libraries);
@@ -167,21 +138,16 @@ fn place(repository: &Repository) -> PathBuf {
     repository.target.join("sanitize")
 }
 
-fn clear(repository: &Repository) -> Result<(), String> {
-    let place = place(repository);
-    std::fs::remove_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))
-}
-
 fn addresses(repository: &Repository) -> Result<Verdict, String> {
     let Some(nightly) = Nightly::find() else {
-        return Ok(Verdict::Missing("there is no nightly compiler (rustup toolchain install nightly)"));
+        return missing("there is no nightly compiler (rustup toolchain install nightly)");
     };
     repository::run(&mut nightly.cargo(repository, "address", &["build", "--package", "enmm-fuzz"]))?;
     let mut fuzz = repository.command(place(repository).join(&nightly.host).join("release/enmm-fuzz"));
     fuzz.env("ASAN_OPTIONS", ASAN_OPTIONS).arg("--finds").arg(repository.target.join("fuzz-sanitized"));
     repository::run(&mut fuzz)?;
-    clear(repository)?;
-    Ok(Verdict::Clean("all parts".to_owned()))
+    repository::remove(&place(repository))?;
+    Ok(Verdict::Good("all parts".to_owned()))
 }
 
 fn threads(repository: &Repository) -> Result<Verdict, String> {
@@ -194,27 +160,27 @@ fn tables_with_threads(repository: &Repository) -> Result<Verdict, String> {
 
 /// The handle tables interpreted, where every access to memory and every lock is looked at.
 fn tables_in_miri(repository: &Repository) -> Result<Verdict, String> {
-    if !is_there("rustup", &["run", "nightly", "cargo", "miri", "--version"]) {
-        return Ok(Verdict::Missing("Miri is not there (rustup component add miri --toolchain nightly)"));
+    if !succeeds(Command::new("rustup").args(["run", "nightly", "cargo", "miri", "--version"])) {
+        return missing("Miri is not there (rustup component add miri --toolchain nightly)");
     }
     let mut miri = repository.command("rustup");
     miri.args(["run", "nightly", "cargo", "miri", "test", "--package", "enmm-handles", "--lib"]);
     repository::run(miri.env("CARGO_TARGET_DIR", place(repository)).stdout(Stdio::null()))?;
-    clear(repository)?;
-    Ok(Verdict::Clean("threads that make, find and remove objects".to_owned()))
+    repository::remove(&place(repository))?;
+    Ok(Verdict::Good("threads that make, find and remove objects".to_owned()))
 }
 
 /// Runs tests that the nightly compiler has built with its thread sanitizer.
 fn with_threads(repository: &Repository, tests: &[&str], seen: &str) -> Result<Verdict, String> {
     let sources = |nightly: &Nightly| nightly.system.join("lib/rustlib/src/rust/library").is_dir();
     let Some(nightly) = Nightly::find().filter(sources) else {
-        return Ok(Verdict::Missing(
+        return missing(
             "the nightly compiler, or the sources of its standard library, which must be built along, are not there \
              (rustup component add rust-src --toolchain nightly)",
-        ));
+        );
     };
     let arguments = [&["test", "-Zbuild-std"], tests].concat();
     repository::run(&mut nightly.cargo(repository, "thread", &arguments))?;
-    clear(repository)?;
-    Ok(Verdict::Clean(seen.to_owned()))
+    repository::remove(&place(repository))?;
+    Ok(Verdict::Good(seen.to_owned()))
 }

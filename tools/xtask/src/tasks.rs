@@ -1,48 +1,50 @@
 //! Tasks that write what is committed but generated.
 
-use std::path::Path;
 use std::process::Command;
 
-use crate::book;
 use crate::repository::{self, Repository};
 use crate::test::{SCHEMA, schema};
 use crate::venv;
 
 const BENCHMARK: &str = "tools/bench";
-const MAIN_CASE: &str = "examples/cases/fractured_slope.toml";
-/// Pictures of the main case that the README shows.
-const PICTURES: [&str; 4] = ["model.png", "deformed.png", "history.png", "stage2_joints.png"];
-
-/// Further cases with the command that draws their picture, its name, and the name under which the README shows it.
-const CASES: [[&str; 4]; 2] = [
-    ["run", "examples/cases/shaken_slope.toml", "history.png", "shaken.png"],
-    ["fos", "examples/cases/plane_slide.toml", "fos.png", "fos.png"],
+/// A run that draws contours.
+const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
+/// Pictures of the README and of the tutorials: command, case, picture of its results, and its place in `docs`.
+const PICTURES: [[&str; 4]; 17] = [
+    ["run", "fractured_slope", "model.png", "pictures/model.png"],
+    ["run", "fractured_slope", "deformed.png", "pictures/deformed.png"],
+    ["run", "fractured_slope", "history.png", "pictures/history.png"],
+    ["run", "fractured_slope", "stage2_joints.png", "pictures/stage2_joints.png"],
+    ["run", "shaken_slope", "history.png", "pictures/shaken.png"],
+    ["fos", "plane_slide", "fos.png", "pictures/fos.png"],
+    ["run", "road_cut", "stage2_joints.png", "book/pictures/road_cut_joints.png"],
+    [CONTOURS, "road_cut", "stage1_displacement_contours.png", "book/pictures/road_cut_displacement.png"],
+    [CONTOURS, "road_cut", "stage2_mean_stress_contours.png", "book/pictures/road_cut_mean_stress.png"],
+    ["fos", "road_cut", "fos.png", "book/pictures/road_cut_fos.png"],
+    ["fos", "road_cut", "failure.png", "book/pictures/road_cut_failure.png"],
+    ["run", "step_path", "stage2_joints.png", "book/pictures/step_path_joints.png"],
+    ["run", "toppling", "stage1_joints.png", "book/pictures/toppling_joints.png"],
+    ["run", "toppling", "deformed.png", "book/pictures/toppling_deformed.png"],
+    ["run", "pit", "deformed.png", "book/pictures/pit_deformed.png"],
+    ["run", "pit", "stage4_joints.png", "book/pictures/pit_joints.png"],
+    ["fos", "pit", "failure.png", "book/pictures/pit_failure.png"],
 ];
 
 /// Coupling examples, which each draw a picture.
 const COUPLINGS: [&str; 3] = ["earthquake", "reservoir", "twin"];
 
 /// Runs a program of the verification crate: `report` writes the manual, `compare` sets the integrators side by side.
-///
-/// # Errors
-/// When it does not build, or ends with another status than 0.
 pub fn verification(repository: &Repository, program: &str) -> Result<(), String> {
     let run = ["run", "--quiet", "--release", "--package", "enmm-verification", "--bin", program];
     repository::run(repository.cargo(&run).env("ENMM_LABEL", label(repository)?))
 }
 
 /// Prints the cost of a step through every export.
-///
-/// # Errors
-/// When the program does not build or run.
 pub fn overhead(repository: &Repository) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["run", "--quiet", "--release", "--bin", "enmm-overhead"]))
 }
 
 /// Writes the schema of the case file as the command line prints it.
-///
-/// # Errors
-/// When the program does not build or run, or the file cannot be written.
 pub fn write_schema(repository: &Repository) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli"])?;
     let schema = schema(repository)?;
@@ -53,9 +55,6 @@ pub fn write_schema(repository: &Repository) -> Result<(), String> {
 
 /// Times standard models on one thread, or with `--peers` in `options` other programs beside enmm, and writes tables
 /// and plots with commit and date.
-///
-/// # Errors
-/// When the program does not build or run.
 pub fn write_benchmark(repository: &Repository, options: &[&str]) -> Result<(), String> {
     repository.build(&["--package", "enmm-cli", "--package", "enmm-peers"])?;
     let beside_others = options.iter().any(|option| option.starts_with("--peers"));
@@ -75,53 +74,31 @@ fn label(repository: &Repository) -> Result<String, String> {
     Ok(format!("Commit {commit}, {date}"))
 }
 
-/// Runs the main case and further ones and copies their pictures to where the README shows them.
-///
-/// # Errors
-/// When the case does not run or a picture is missing.
+/// Runs the cases of the documents and copies their pictures to where the pages show them; then the coupling examples,
+/// which draw the pictures of `docs/coupling.md`.
 pub fn write_pictures(repository: &Repository) -> Result<(), String> {
-    repository.build(&["--package", "enmm-cli"])?;
-    let results = repository.target.join("picture-results/main");
-    repository::run(repository.command(repository.enmm()).args(["run", MAIN_CASE, "-o"]).arg(&results))?;
-    let pictures = repository.root.join("docs/pictures");
-    std::fs::create_dir_all(&pictures).map_err(|error| format!("{}: {error}", pictures.display()))?;
-    for name in PICTURES {
-        let from = results.join(name);
-        std::fs::copy(&from, pictures.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
-        println!("wrote docs/pictures/{name}");
+    repository.build(&["--package", "enmm-cli", "--package", "enmm-capi"])?;
+    let docs = repository.root.join("docs");
+    for (k, [command, case, picture, shown]) in PICTURES.into_iter().enumerate() {
+        let first = PICTURES.iter().position(|other| other[..2] == [command, case]).unwrap_or(k);
+        let from = repository.target.join("picture-results").join(format!("{case}_{first}"));
+        if first == k {
+            let mut run = repository.command(repository.enmm());
+            run.args(command.split(' ')).arg(format!("examples/cases/{case}.toml"));
+            repository::run(run.arg("-o").arg(&from))?;
+        }
+        repository::write(&docs.join(shown), repository::read(&from.join(picture))?)?;
+        println!("wrote docs/{shown}");
     }
-    write_cases(repository, &pictures)?;
-    book::write_pictures(repository)?;
-    write_couplings(repository, &pictures)
-}
-
-/// Runs the further cases and copies one picture of each.
-fn write_cases(repository: &Repository, pictures: &Path) -> Result<(), String> {
-    for [command, case, name, shown] in CASES {
-        let results = repository.target.join("picture-results").join(shown);
-        repository::run(repository.command(repository.enmm()).args([command, case, "-o"]).arg(&results))?;
-        let from = results.join(name);
-        std::fs::copy(&from, pictures.join(shown)).map_err(|error| format!("{}: {error}", from.display()))?;
-        println!("wrote docs/pictures/{shown}");
-    }
-    Ok(())
-}
-
-/// Runs the coupling examples, which draw the pictures of `docs/coupling.md`.
-fn write_couplings(repository: &Repository, pictures: &Path) -> Result<(), String> {
-    repository.build(&["--package", "enmm-capi"])?;
     for name in COUPLINGS {
         let mut example = venv::command(repository, venv::Packages::All)?;
-        example.arg(format!("examples/coupling/{name}.py")).arg("-o").arg(pictures.join(format!("{name}.png")));
+        example.arg(format!("examples/coupling/{name}.py")).arg("-o").arg(docs.join(format!("pictures/{name}.png")));
         repository::run(&mut example)?;
     }
     Ok(())
 }
 
 /// Writes the C header that belongs to the sources of the C ABI.
-///
-/// # Errors
-/// When its program does not build or run, or the file cannot be written.
 pub fn write_header(repository: &Repository) -> Result<(), String> {
     repository::run(&mut repository.cargo(&["run", "--quiet", "--package", "enmm-capi", "--example", "header"]))?;
     println!("wrote the header of the C ABI");

@@ -2,7 +2,6 @@
 //!
 //! All of it is built by the profile of tests, so that nothing is compiled twice.
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use crate::bits;
@@ -64,44 +63,41 @@ fn install_all(repository: &Repository) {
 
 /// Returns whether there is a build, which all other steps need; they run whatever failed before.
 fn take_build(repository: &Repository, steps: &mut Steps) -> bool {
-    steps.take("format", || cargo(repository, &["fmt", "--all", "--check"]));
-    steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default()))
+    steps.take("format", || repository::run(&mut repository.cargo(&["fmt", "--all", "--check"])));
+    steps.take("build", || repository.build(&["--workspace"]))
 }
 
 fn take_usual(repository: &Repository, steps: &mut Steps, words: &[&str], extent: Option<(&str, &str)>) {
     steps.take("tests", || cargo_test(repository, words, extent));
-    steps.take("schema", || compare_schema(repository).map(|()| Counts::default()));
+    steps.take("schema", || compare_schema(repository));
     steps.take("bits", || bits::quick(repository));
     steps.take("python", || python::test(repository, Share::Usual));
 }
 
 fn take_others(repository: &Repository, steps: &mut Steps, oldest: Result<Option<Beside>, String>) {
-    steps.take("lints", || cargo(repository, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]));
+    let lint = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    steps.take("lints", || repository::run(&mut repository.cargo(&lint)));
     steps.take("documentation", || {
         let mut doc = repository.cargo(&["doc", "--workspace", "--no-deps"]);
-        repository::run(doc.env("RUSTDOCFLAGS", "-D warnings")).map(|()| Counts::default())
+        repository::run(doc.env("RUSTDOCFLAGS", "-D warnings"))
     });
-    steps.take("dependencies", || supply::deny(repository).map(|()| Counts::default()));
+    steps.take("dependencies", || supply::deny(repository));
     steps.take("other python", || python::test(repository, Share::Others));
     steps.take("faults", || faults::rounds_of(repository, 1));
-    steps.take("fuzz", || throw(repository, &[]).map(|()| Counts::default()));
-    steps.take("sanitizers", || sanitize::over_hosts(repository).map(|()| Counts::default()));
-    steps.take("oldest compiler", || oldest?.map_or(Ok(()), Beside::finish).map(|()| Counts::default()));
+    steps.take("fuzz", || throw(repository, &[]));
+    steps.take("sanitizers", || sanitize::run(repository, true));
+    steps.take("oldest compiler", || oldest?.map_or(Ok(()), Beside::finish));
 }
 
 /// Builds for Windows and for ARM, and compares their quick results on emulators with the golden table.
 pub fn platforms(repository: &Repository) -> ExitCode {
     let mut steps = Steps::default();
-    if steps.take("build", || repository.build(&["--workspace"]).map(|()| Counts::default())) {
+    if steps.take("build", || repository.build(&["--workspace"])) {
         for platform in [&WINDOWS_QUICK, &AARCH64_QUICK] {
             steps.take(platform.name, || cross::quick(repository, platform));
         }
     }
     steps.close()
-}
-
-fn cargo(repository: &Repository, args: &[&str]) -> Result<Counts, String> {
-    repository::run(&mut repository.cargo(args)).map(|()| Counts::default())
 }
 
 /// Runs the long campaigns; it fails when one failed, or there is none.
@@ -111,32 +107,19 @@ pub fn long(repository: &Repository) -> ExitCode {
     steps.close()
 }
 
-/// Builds, and runs all Python tests.
-pub fn python(repository: &Repository) -> ExitCode {
-    built(repository, "python", || python::test(repository, Share::All))
-}
-
-/// Builds, and runs the full campaigns of the ensembles in Python.
-pub fn ensembles(repository: &Repository) -> ExitCode {
-    built(repository, "ensembles", || python::test(repository, Share::Ensembles))
+/// Builds, and runs a share of the Python tests.
+pub fn python(repository: &Repository, name: &str, share: Share) -> ExitCode {
+    let mut steps = Steps::default();
+    if steps.take("build", || repository.build(&["--workspace", "--examples"])) {
+        steps.take(name, || python::test(repository, share));
+    }
+    steps.close()
 }
 
 /// Throws wrong cases, joint networks, calls and states at every entrance, as `words` say.
-///
-/// # Errors
-/// When the program does not build, or finds something.
 pub fn fuzz(repository: &Repository, words: &[&str]) -> Result<(), String> {
     repository.build(&["--workspace"])?;
     throw(repository, words)
-}
-
-fn built(repository: &Repository, name: &str, act: impl FnOnce() -> Result<Counts, String>) -> ExitCode {
-    let mut steps = Steps::default();
-    let build = || repository.build(&["--workspace", "--examples"]).map(|()| Counts::default());
-    if steps.take("build", build) {
-        steps.take(name, act);
-    }
-    steps.close()
 }
 
 fn throw(repository: &Repository, words: &[&str]) -> Result<(), String> {
@@ -156,17 +139,13 @@ fn cargo_test(repository: &Repository, words: &[&str], extent: Option<(&str, &st
 }
 
 /// The schema as the program prints it.
-///
-/// # Errors
-/// When the program does not run.
 pub fn schema(repository: &Repository) -> Result<Vec<u8>, String> {
     repository::capture(repository.command(repository.enmm()).arg("schema"))
 }
 
 fn compare_schema(repository: &Repository) -> Result<(), String> {
     let printed = schema(repository)?;
-    let path: &Path = &repository.root.join(SCHEMA);
-    let committed = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let committed = repository::read(&repository.root.join(SCHEMA))?;
     if printed == committed {
         return Ok(());
     }

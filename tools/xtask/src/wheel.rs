@@ -52,24 +52,22 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
 }
 
 /// Makes the wheel of what has been built.
-///
-/// # Errors
-/// As [`build`].
 pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, String> {
     let (binaries, wheels) = (platform.shipped(repository), platform.wheels(repository));
-    for folder in [&binaries, &wheels] {
-        repository::remove(folder)?;
-        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    }
+    repository::fresh(binaries.clone())?;
+    repository::fresh(wheels.clone())?;
     for name in platform.binaries() {
         platform.strip(repository, &platform.built(repository).join(&name), &binaries.join(&name))?;
     }
-    write_parts(repository, &binaries)?;
+    // The licences of all crates in the binaries, and the list of these crates.
+    let made = parts::of(Some(&repository.root))?;
+    repository::write(&binaries.join(parts::LIST), made.list)?;
+    repository::write(&binaries.join(parts::LICENSES), made.licenses)?;
     let mut pip = venv::command(repository, venv::Packages::Usual)?;
     pip.args(["-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-build-isolation"]);
     pip.envs(platform.cross.as_ref().map(|cross| ("ENMM_PLATFORM", cross.wheel)));
     repository::run(pip.arg("--wheel-dir").arg(&wheels).arg(PACKAGE).env("ENMM_BINARIES", &binaries))?;
-    let entries = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
+    let entries = std::fs::read_dir(&wheels).map_err(repository::at(&wheels))?;
     let wheel =
         entries.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|end| end == "whl"));
     let wheel = wheel.ok_or_else(|| format!("{}: pip left no wheel", wheels.display()))?;
@@ -78,14 +76,5 @@ pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, Str
 }
 
 fn size_of(file: &Path) -> Result<u64, String> {
-    file.metadata().map(|data| data.len()).map_err(|error| format!("{}: {error}", file.display()))
-}
-
-/// Writes the licences of all crates in the binaries, and the list of these crates, beside them.
-fn write_parts(repository: &Repository, folder: &Path) -> Result<(), String> {
-    let made = parts::of(Some(&repository.root))?;
-    for (name, text) in [(parts::LIST, made.list), (parts::LICENSES, made.licenses)] {
-        std::fs::write(folder.join(name), text).map_err(|error| format!("{name}: {error}"))?;
-    }
-    Ok(())
+    file.metadata().map(|data| data.len()).map_err(repository::at(file))
 }

@@ -6,12 +6,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::Instant;
 
-use enmm::model::Simulation;
 use enmm::model::case::Invalid;
 use enmm_io::LoadedCase;
 use enmm_run::{NetOptions, apparent, stereonet, write_model_page};
 use enmm_stability::kinematics::Plane;
-use enmm_stability::limit_analysis::{Bound, Way};
+use enmm_stability::limit_analysis::Way;
 
 use super::shown::Shown;
 use crate::case::CaseArguments;
@@ -29,7 +28,7 @@ pub fn build(case: &CaseArguments, face: Option<Plane>, shown: &Shown, bounds: &
     });
     let told = loaded.as_ref().ok().map(|loaded| listed(&loaded.warnings, &loaded.case.reader_notes));
     match loaded.and_then(|loaded| Ok((pictured(&loaded)?, loaded))) {
-        Ok((pictured, loaded)) => {
+        Ok((Pictured { page, facts, notes }, loaded)) => {
             let mut number = 0;
             let net = stereonet(&loaded, &NetOptions { face, ..NetOptions::default() });
             let (net, refused) = match net {
@@ -42,19 +41,19 @@ pub fn build(case: &CaseArguments, face: Option<Plane>, shown: &Shown, bounds: &
                 number = view.model;
                 view.message = format!("{}, built in {:.0} ms", loaded.case.title, 1e3 * seconds);
                 view.error = None;
-                view.facts = pictured.facts;
+                view.facts = facts;
                 let findings = net.iter().flat_map(|(_, findings)| findings);
                 view.facts.extend(
                     findings.filter_map(|line| {
                         line.split_once(": ").map(|(name, value)| (name.to_owned(), value.to_owned()))
                     }),
                 );
-                view.notes = pictured.notes;
+                view.notes = notes;
                 view.notes.extend(refused);
-                view.page = Some(pictured.page);
+                view.page = Some(page);
                 view.net = net.map(|(svg, _)| Arc::from(svg.into_bytes()));
             });
-            bounds.ask(number, loaded);
+            let _ = bounds.asked.send((number, loaded));
         }
         Err(error) => shown.change(|view| {
             view.error = Some(error);
@@ -71,43 +70,33 @@ struct Pictured {
     notes: Vec<String>,
 }
 
+/// The model of a case. Its page is made in a folder of the system that is gone afterwards.
 fn pictured(loaded: &LoadedCase) -> Result<Pictured, String> {
     let invalid = |invalid: Invalid| loaded.source.locate(&invalid.key, &invalid.message).to_string();
     let mut simulation = enmm_implicit::build(loaded.case.clone(), &mut |_| ()).map_err(invalid)?;
     simulation.validate_stages().map_err(invalid)?;
-    let page = page(loaded, &simulation).map_err(|error| format!("cannot make the page ({error})"))?;
+    let page = || -> std::io::Result<Vec<u8>> {
+        let folder = tempfile::tempdir()?;
+        std::fs::read(write_model_page(folder.path(), loaded, &simulation)?)
+    };
+    let page = page().map_err(|error| format!("cannot make the page ({error})"))?;
     let (built, covers) = (simulation.built(), &simulation.model().covers);
+    let fact = |name: &str, value: String| (name.to_owned(), value);
+    let mut facts = vec![
+        fact("blocks", covers.block_count().to_string()),
+        fact("elements", covers.element_count().to_string()),
+        fact("joints", loaded.case.joints.len().to_string()),
+    ];
+    facts.extend(loaded.orientations.planes.iter().map(|plane| fact(&plane.name, apparent(plane))));
+    facts.push(fact(BOUND, "…".to_owned()));
     let warnings = [loaded.warnings.as_slice(), &built.warnings].concat();
-    Ok(Pictured {
-        page,
-        facts: facts(loaded, covers.block_count(), covers.element_count()),
-        notes: listed(&warnings, &built.notes),
-    })
+    Ok(Pictured { page: page.into(), facts, notes: listed(&warnings, &built.notes) })
 }
 
 /// Warnings, then notes, a line each.
 fn listed(warnings: &[String], notes: &[String]) -> Vec<String> {
     let warnings = warnings.iter().map(|warning| format!("warning: {warning}"));
     warnings.chain(notes.iter().map(|note| format!("note: {note}"))).collect()
-}
-
-/// The page, made in a folder of the system that is gone afterwards.
-fn page(loaded: &LoadedCase, simulation: &Simulation) -> std::io::Result<Arc<[u8]>> {
-    let folder = tempfile::tempdir()?;
-    let page = write_model_page(folder.path(), loaded, simulation)?;
-    Ok(Arc::from(std::fs::read(page)?))
-}
-
-fn facts(loaded: &LoadedCase, blocks: usize, elements: usize) -> Vec<(String, String)> {
-    let fact = |name: &str, value: String| (name.to_owned(), value);
-    let mut facts = vec![
-        fact("blocks", blocks.to_string()),
-        fact("elements", elements.to_string()),
-        fact("joints", loaded.case.joints.len().to_string()),
-    ];
-    facts.extend(loaded.orientations.planes.iter().map(|plane| fact(&plane.name, apparent(plane))));
-    facts.push(fact(BOUND, "…".to_owned()));
-    facts
 }
 
 /// Finds the bound of the latest model, beside the builds.
@@ -124,16 +113,6 @@ impl BoundDesk {
         let _ = thread::Builder::new().name("bound".to_owned()).spawn(move || answer(&questions, &shown));
         Self { asked }
     }
-
-    fn ask(&self, number: u64, loaded: LoadedCase) {
-        let _ = self.asked.send((number, loaded));
-    }
-}
-
-/// The factors of a bound, how their mechanism moves, and what to know of them.
-fn bound_text(bound: &Bound) -> String {
-    let way = bound.level_tops.way.map(Way::words);
-    std::iter::once(bound.summary()).chain(way).collect::<Vec<_>>().join("; ")
 }
 
 fn answer(questions: &Receiver<(u64, LoadedCase)>, shown: &Shown) {
@@ -144,7 +123,10 @@ fn answer(questions: &Receiver<(u64, LoadedCase)>, shown: &Shown) {
             "rock yields: see `enmm bound`".to_owned()
         } else {
             match enmm_run::bound(&loaded) {
-                Ok(bound) => bound_text(&bound),
+                Ok(bound) => {
+                    let way = bound.level_tops.way.map(Way::words);
+                    std::iter::once(bound.summary()).chain(way).collect::<Vec<_>>().join("; ")
+                }
                 Err(error) => format!("none: {error}"),
             }
         };

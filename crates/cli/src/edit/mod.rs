@@ -4,7 +4,6 @@ mod build;
 mod shown;
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, SystemTime};
@@ -17,7 +16,8 @@ use self::build::{BoundDesk, build};
 use self::shown::Shown;
 use crate::case::CaseArguments;
 use crate::stereonet::plane;
-use crate::{BAD_INPUT, FAILED, fail, print_line};
+use crate::view::serve;
+use crate::{BAD_INPUT, Failure, Outcome};
 
 /// Pause between two looks at the files of the case.
 const PAUSE: Duration = Duration::from_millis(40);
@@ -38,26 +38,18 @@ pub struct Arguments {
 }
 
 /// Serves the page of a case to browsers on this machine, until it is interrupted. Nothing is written beside the case.
-pub fn edit(arguments: Arguments) -> ExitCode {
+pub fn edit(arguments: Arguments) -> Outcome {
     let Arguments { case, port, face } = arguments;
     if !case.path.is_file() {
         let place = case.path.display();
-        return fail(&format!("{place} is no file: name a case file, as `enmm new slope` writes it"), BAD_INPUT);
+        let message = format!("{place} is no file: name a case file, as `enmm new slope` writes it");
+        return Err(Failure::new(message, BAD_INPUT));
     }
     let shown = Arc::new(Shown::new(&case.path));
-    let server = match Server::of(Arc::clone(&shown) as Arc<dyn Source>, port) {
-        Ok(server) => server,
-        Err(error) => return fail(&format!("cannot listen at port {port} ({error})"), FAILED),
-    };
-    let outcome = server.address().and_then(|address| {
-        print_line(&format!("open http://{address}/ in a browser; Ctrl-C ends this"));
-        thread::Builder::new().name("build".to_owned()).spawn(move || watch(&case, face, &shown))?;
-        server.run()
-    });
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&format!("cannot serve any more ({error})"), FAILED),
-    }
+    let server = Server::of(Arc::clone(&shown) as Arc<dyn Source>, port);
+    serve(server, port, || {
+        thread::Builder::new().name("build".to_owned()).spawn(move || watch(&case, face, &shown)).map(|_| ())
+    })
 }
 
 /// Builds the model each time that a file of the case has changed, without end.

@@ -53,21 +53,17 @@ impl<'a> Draft<'a> {
         }
         let title = Path::new(drawing).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let _ = write!(text, "title = {title:?}\n\n[domain]\ngeometry_file = {drawing:?}\n");
-        if let Some(layer) = self.lawless() {
+        // Joints of a file that is no drawing to which it gives no law.
+        let lawless = |layer: &&LayerSurvey| !self.survey.is_drawing && layer.name == DEFAULT_LAW;
+        if let Some(layer) = self.survey.layers.iter().find(lawless) {
             let _ = writeln!(text, "joint_law = {:?}", layer.name);
         }
         for mapped in self.layers.iter().filter(|_| self.survey.is_drawing) {
             text += &layer_table(mapped);
         }
         let _ = write!(text, "\n[mesh]\nsize = {}\n", self.mesh_size());
-        text += &self.table("[rock.rock]", &ROCK);
-        for mapped in &self.layers {
-            let name = mapped.name.as_deref().unwrap_or_default();
-            match mapped.role {
-                "joint" => text += &self.table(&format!("[joint_law.{}]", quoted(name)), &LAW),
-                "bolt" => text += &self.table(&format!("[[bolt]]\nname = {name:?}"), &BOLT),
-                _ => {}
-            }
+        for (head, values) in self.tables() {
+            text += &self.table(&head.replace("[[bolt]] ", "[[bolt]]\nname = "), values);
         }
         for (edge, axes) in self.fixities() {
             let [[a, b], [c, d]] = edge;
@@ -76,9 +72,18 @@ impl<'a> Draft<'a> {
         text + "\n[[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration_max = 10\n"
     }
 
-    /// Joints of a file that is no drawing to which it gives no law.
-    fn lawless(&self) -> Option<&LayerSurvey> {
-        self.survey.layers.iter().find(|layer| !self.survey.is_drawing && layer.name == DEFAULT_LAW)
+    /// Tables whose values the drawing does not have, each with its head, that of a bolt with its name.
+    fn tables(&self) -> Vec<(String, &'static [Value])> {
+        let mut tables = vec![("[rock.rock]".to_owned(), &ROCK[..])];
+        for mapped in &self.layers {
+            let name = mapped.name.as_deref().unwrap_or_default();
+            match mapped.role {
+                "joint" => tables.push((format!("[joint_law.{}]", quoted(name)), &LAW)),
+                "bolt" => tables.push((format!("[[bolt]] {name:?}"), &BOLT)),
+                _ => {}
+            }
+        }
+        tables
     }
 
     /// Lines to print: layers, assumptions and open points.
@@ -126,21 +131,12 @@ impl<'a> Draft<'a> {
         if !fixities.iter().any(|(_, axes)| *axes == "xy") {
             open.push("the outline has no level base: add `[[fix]]` with `edge`".to_owned());
         }
-        let of = |table: &str, values: &[Value]| {
+        let of = |(head, values): (String, &[Value])| {
             let keys: Vec<&str> = values.iter().map(|value| value.key).collect();
-            format!("{table}: {}", keys.join(", "))
+            format!("{head}: {}", keys.join(", "))
         };
-        let mut values = vec![of("[rock.rock]", &ROCK)];
-        for mapped in &self.layers {
-            let name = mapped.name.as_deref().unwrap_or_default();
-            match mapped.role {
-                "joint" => values.push(of(&format!("[joint_law.{}]", quoted(name)), &LAW)),
-                "bolt" => values.push(of(&format!("[[bolt]] {name:?}"), &BOLT)),
-                _ => {}
-            }
-        }
-        let examples = if self.examples { std::mem::take(&mut values) } else { Vec::new() };
-        open.extend(values);
+        let mut examples = Vec::new();
+        if self.examples { &mut examples } else { &mut open }.extend(self.tables().into_iter().map(of));
         [("assumed", assumed), ("example values", examples), ("open", open)]
     }
 

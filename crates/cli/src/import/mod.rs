@@ -9,8 +9,8 @@ use std::process::ExitCode;
 use clap::Args;
 
 use self::draft::Draft;
-use crate::new::{create, schema_beside};
-use crate::{BAD_INPUT, fail, print_line};
+use crate::new::create_case;
+use crate::{BAD_INPUT, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm import`.
 #[derive(Args)]
@@ -27,29 +27,16 @@ pub struct Arguments {
 }
 
 /// Reads the layers of a drawing, or the laws of another file, and writes a case that maps all of them.
-pub fn import(arguments: &Arguments) -> ExitCode {
+pub fn import(arguments: &Arguments) -> Outcome {
     let Arguments { drawing, output, examples } = arguments;
     let name = Path::new(drawing.file_stem().unwrap_or_default()).with_extension("toml");
     let case = output.clone().unwrap_or(name);
     // Arcs count by their corners here; the case says how close they are drawn.
-    let survey = match enmm_io::survey_geometry(drawing, f64::INFINITY) {
-        Ok(survey) => survey,
-        Err(error) => return fail(&error, BAD_INPUT),
-    };
+    let survey = enmm_io::survey_geometry(drawing, f64::INFINITY).or_fail(BAD_INPUT)?;
     let draft = Draft::new(&survey, *examples);
-    let text = draft.case(&reference(drawing, &case));
-    if let Err(error) = create(&case, &text) {
-        let reason = match error.kind() {
-            std::io::ErrorKind::AlreadyExists => "it is there already".to_owned(),
-            _ => error.to_string(),
-        };
-        return fail(&format!("cannot write {} ({reason}): choose another file with -o", case.display()), BAD_INPUT);
-    }
-    if let Err(message) = schema_beside(&case) {
-        return fail(&message, BAD_INPUT);
-    }
+    create_case(&case, &draft.case(&reference(drawing, &case)))?;
     print_line(&draft.report(&case));
-    ExitCode::SUCCESS
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The drawing as the case names it: relative to its folder where the drawing lies within, else whole.

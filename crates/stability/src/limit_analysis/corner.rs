@@ -36,7 +36,9 @@ struct Sector {
 pub fn corners(outlines: &Outlines, element_block: &[BlockId], strengths: &Strengths) -> (Vec<Contact>, Vec<Corner>) {
     let (mut points, mut corners) = (Vec::new(), Vec::new());
     let sectors = sectors(outlines, element_block, strengths);
-    for group in sectors.chunk_by(|a, b| a.at == b.at).filter(|group| group.len() > 2 || lie_apart(group)) {
+    // Two sectors about a point press on each other there if they leave a gap between them.
+    let meet = |group: &&[Sector]| group.len() > 2 || group.len() == 2 && group[0].shared(&group[1]) < 2;
+    for group in sectors.chunk_by(|a, b| a.at == b.at).filter(meet) {
         let group = merged(group);
         for (k, a) in group.iter().enumerate() {
             for b in group[k + 1..].iter().filter(|b| b.block != a.block && strengths.can_act([a.block, b.block])) {
@@ -48,11 +50,6 @@ pub fn corners(outlines: &Outlines, element_block: &[BlockId], strengths: &Stren
         }
     }
     (points, corners)
-}
-
-/// Whether two sectors about a point leave a gap between them.
-fn lie_apart(group: &[Sector]) -> bool {
-    group.len() == 2 && group[0].shared(&group[1]) < 2
 }
 
 /// All sectors of blocks that are there, those about the same point one after the other.

@@ -210,10 +210,10 @@ pub struct Bound {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BoundError {
     /// The case cannot be built, or holds what limit analysis cannot treat.
-    #[error("{}: {}", .0.key, .0.message)]
-    Case(Invalid),
+    #[error(transparent)]
+    Case(#[from] Invalid),
     /// Every block is held, and none can fail; perhaps ends of joints that miss a line hold them.
-    #[error("{}: {}", .invalid.key, .invalid.message)]
+    #[error("{invalid}")]
     Held {
         /// The fault.
         invalid: Invalid,
@@ -252,12 +252,6 @@ pub enum BoundError {
         /// Position (m).
         y: f64,
     },
-}
-
-impl From<Invalid> for BoundError {
-    fn from(invalid: Invalid) -> Self {
-        Self::Case(invalid)
-    }
 }
 
 impl Bare {
@@ -390,7 +384,7 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
     let Blocks { program, corners, interfaces, points } = blocks;
     let free = program.bodies.iter().filter(|body| body.is_free()).count();
     let mut search = Search { program: &program, programs: 0 };
-    let unsolved = |error: Unsolved| BoundError::Unsolved { blocks: free, status: format!("{:?}", error.status) };
+    let unsolved = |error: Unsolved| BoundError::Unsolved { blocks: free, status: format!("{error:?}") };
     let associated = search.limit_near(&[], None).map_err(unsolved)?;
     let choice = search.facets(&corners, associated.clone()).map_err(unsolved)?;
     let both: Vec<Contact> = corners.iter().flat_map(|corner| corner.facets).collect();

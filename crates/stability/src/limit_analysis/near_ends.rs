@@ -66,17 +66,12 @@ pub fn near_ends(case: &Case, built: &Built, blocks: usize, known: Factor) -> Re
         joined = Other::of(&all_joined(case, built, &ends), blocks)?.map_or(Ok(known), |other| other.below(known))?;
     }
     if !ends.iter().all(is_kept) {
-        drawn = Other::of(&as_drawn(case), blocks)?.map_or(Ok(known), |other| other.above(known))?;
+        let mut as_drawn = case.clone();
+        as_drawn.domain.extend_ends = Some(0.0);
+        drawn = Other::of(&as_drawn, blocks)?.map_or(Ok(known), |other| other.above(known))?;
     }
     let decide = joined.value() < (1.0 - DECIDES) * drawn.value();
     Ok(decide.then_some(NearEnds { drawn, joined, ends }))
-}
-
-/// The case with no end joined.
-fn as_drawn(case: &Case) -> Case {
-    let mut case = case.clone();
-    case.domain.extend_ends = Some(0.0);
-    case
 }
 
 /// The case with the stretches that are missing at the ends that stay in the rock.
@@ -134,5 +129,5 @@ impl Blocks {
 }
 
 fn status(unsolved: Unsolved) -> String {
-    format!("the linear program was not solved ({:?})", unsolved.status)
+    format!("the linear program was not solved ({unsolved:?})")
 }

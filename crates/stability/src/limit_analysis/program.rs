@@ -63,18 +63,8 @@ pub struct Given {
     pub dilation: f64,
 }
 
-/// The solver gave up.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unsolved {
-    /// Status of the solver.
-    pub status: SolverStatus,
-}
-
-impl From<SolverStatus> for Unsolved {
-    fn from(status: SolverStatus) -> Self {
-        Self { status }
-    }
-}
+/// The status with which the solver gave up.
+pub type Unsolved = SolverStatus;
 
 impl Program {
     /// Solves for joints whose strength is multiplied by `strength`, with `more` contacts.
@@ -237,7 +227,7 @@ impl Rows {
     /// The least of unknown 0.
     fn least(&self) -> Result<DefaultSolution<f64>, Unsolved> {
         let (a, cones) = self.cones();
-        Ok(ACCURACY.least(&a, &self.right, &cones)?)
+        ACCURACY.least(None, &a, &self.right, &cones)
     }
 
     /// The least energy in the springs of all contacts, of which each end bears half.
@@ -250,7 +240,7 @@ impl Rows {
             factors[*shear] = along;
         }
         let (a, cones) = self.cones();
-        Ok(ACCURACY.least_squares(factors, &a, &self.right, &cones)?)
+        ACCURACY.least(Some(factors), &a, &self.right, &cones)
     }
 
     /// Normal forces (N/m) of the contacts.

@@ -1,7 +1,5 @@
 //! The strength at which equilibrium ends, and the choice of facets between corners that face each other.
 
-use clarabel::solver::SolverStatus;
-
 use super::contact::Contact;
 use super::corner::Corner;
 use super::program::{Program, Solution, Unsolved};
@@ -47,15 +45,6 @@ impl Limit {
             }
             (None, _) => Factor::AtLeast(RANGE[1]),
             (Some(_), None) => Factor::AtMost(RANGE[0]),
-        }
-    }
-
-    /// A number that grows with the factor.
-    fn order(&self) -> f64 {
-        match self.factor() {
-            Factor::Found(factor) => factor,
-            Factor::AtLeast(_) => f64::INFINITY,
-            Factor::AtMost(_) => 0.0,
         }
     }
 }
@@ -122,9 +111,7 @@ impl Search<'_> {
             stride *= stride;
         }
         match (limit.low, limit.high) {
-            (Some(low), Some(high)) if high > low * (1.0 + WIDE) => {
-                Err(Unsolved { status: SolverStatus::MaxIterations })
-            }
+            (Some(low), Some(high)) if high > low * (1.0 + WIDE) => Err(Unsolved::MaxIterations),
             _ => Ok(limit),
         }
     }
@@ -237,11 +224,12 @@ fn contacts_of(corners: &[Corner], chosen: &[(usize, usize)]) -> Vec<Contact> {
 
 /// Takes out the choice with the smallest factor.
 fn pop_least(open: &mut Vec<(Chosen, Limit)>) -> Option<(Chosen, Limit)> {
-    let least = (0..open.len()).min_by(|&a, &b| open[a].1.order().total_cmp(&open[b].1.order()))?;
+    let value = |k: usize| open[k].1.factor().value();
+    let least = (0..open.len()).min_by(|&a, &b| value(a).total_cmp(&value(b)))?;
     Some(open.swap_remove(least))
 }
 
 /// Whether a factor is clearly less than another.
 fn beats(limit: &Limit, best: &Limit) -> bool {
-    limit.order() * (1.0 + SAME) < best.order()
+    limit.factor().value() * (1.0 + SAME) < best.factor().value()
 }

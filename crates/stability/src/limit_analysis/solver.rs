@@ -16,48 +16,29 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Least of unknown 0 where `right` minus `a` times the unknowns lies in the cones.
+    /// Least of unknown 0 where `right` minus `a` times the unknowns lies in the cones; where there are `factors`, least of
+    /// half the sum of the squares of the unknowns, each times its factor.
     ///
     /// # Errors
     /// The status with which the solver gave up.
     pub fn least(
         &self,
+        factors: Option<Vec<f64>>,
         a: &CscMatrix<f64>,
         right: &[f64],
         cones: &[SupportedConeT<f64>],
     ) -> Result<DefaultSolution<f64>, SolverStatus> {
-        let mut cost = vec![0.0; a.n];
-        cost[0] = 1.0;
-        self.solve(&CscMatrix::zeros((a.n, a.n)), &cost, a, right, cones)
-    }
-
-    /// Least of half the sum of the squares of the unknowns, each times its factor, in the same cones.
-    ///
-    /// # Errors
-    /// As [`Accuracy::least`].
-    pub fn least_squares(
-        &self,
-        factors: Vec<f64>,
-        a: &CscMatrix<f64>,
-        right: &[f64],
-        cones: &[SupportedConeT<f64>],
-    ) -> Result<DefaultSolution<f64>, SolverStatus> {
-        let places: Vec<usize> = (0..a.n).collect();
-        let squares = CscMatrix::new_from_triplets(a.n, a.n, places.clone(), places, factors);
-        self.solve(&squares, &vec![0.0; a.n], a, right, cones)
-    }
-
-    fn solve(
-        &self,
-        squares: &CscMatrix<f64>,
-        cost: &[f64],
-        a: &CscMatrix<f64>,
-        right: &[f64],
-        cones: &[SupportedConeT<f64>],
-    ) -> Result<DefaultSolution<f64>, SolverStatus> {
+        let (places, mut cost): (Vec<usize>, _) = ((0..a.n).collect(), vec![0.0; a.n]);
+        let squares = match factors {
+            Some(factors) => CscMatrix::new_from_triplets(a.n, a.n, places.clone(), places, factors),
+            None => {
+                cost[0] = 1.0;
+                CscMatrix::zeros((a.n, a.n))
+            }
+        };
         let mut status = SolverStatus::Unsolved;
         for &regularization in self.regularizations {
-            let solver = DefaultSolver::new(squares, cost, a, right, cones, self.settings(regularization));
+            let solver = DefaultSolver::new(&squares, &cost, a, right, cones, self.settings(regularization));
             let mut solver = solver.map_err(|_| status)?;
             solver.solve();
             status = solver.solution.status;

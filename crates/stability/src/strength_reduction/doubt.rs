@@ -2,7 +2,6 @@
 
 use super::corners::CornersHold;
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
-use crate::limit_analysis::continuum::Bracket;
 use crate::limit_analysis::{Bound, NearEnds};
 use enmm::model::case::{Case, Rock};
 
@@ -15,26 +14,19 @@ const ABOVE: f64 = 1.02;
 const NAMED: usize = 3;
 
 impl Reduction {
-    /// Whether the mechanism of a bound holds more than the few blocks that do not count in trials.
-    fn moves_slope(&self, bound: &Bound) -> bool {
-        let few = self.simulation.mass_of_few();
-        let moving: f64 = bound.level_tops.mechanism.iter().map(|block| block.mass).sum();
-        moving > few
-    }
-
-    /// The same for a bracket.
-    fn moves_rock(&self, bracket: &Bracket) -> bool {
-        bracket.moving().map(|motion| motion.mass).sum::<f64>() > self.simulation.mass_of_few()
-    }
-
     /// The upper bound of limit analysis, when a trial above it was stable: the factor of safety is at most that,
-    /// whatever the trials say.
+    /// whatever the trials say. Its mechanism holds more than the few blocks that do not count in trials.
     pub fn at_most(&self) -> Option<f64> {
-        let limit = match (&self.bracket, &self.bound) {
-            (Some(bracket), _) if self.moves_rock(bracket) => bracket.upper.value(),
-            (None, Ok(bound)) if self.moves_slope(bound) => bound.level_tops.factor.value(),
-            _ => return None,
+        let (limit, moving): (_, f64) = match (&self.bracket, &self.bound) {
+            (Some(bracket), _) => (bracket.upper.value(), bracket.moving().map(|motion| motion.mass).sum()),
+            (None, Ok(Bound { level_tops, .. })) => {
+                (level_tops.factor.value(), level_tops.mechanism.iter().map(|block| block.mass).sum())
+            }
+            (None, Err(_)) => return None,
         };
+        if moving <= self.simulation.mass_of_few() {
+            return None;
+        }
         self.low.filter(|stable| *stable > ABOVE * limit).map(|_| limit)
     }
 

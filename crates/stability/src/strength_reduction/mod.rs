@@ -242,8 +242,8 @@ impl Reduction {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReductionError {
     /// The case cannot be built, or has no stage to begin with.
-    #[error("{}: {}", .0.key, .0.message)]
-    Case(Invalid),
+    #[error(transparent)]
+    Case(#[from] Invalid),
     /// The slope does not come to rest, whatever its strength.
     #[error(
         "stage {stage:?} does not come to rest within {time:.4} s even with {HELD} times the strength (unbalanced \
@@ -263,12 +263,6 @@ pub enum ReductionError {
     /// Interrupted before the trials.
     #[error("interrupted before the first trial")]
     Interrupted,
-}
-
-impl From<Invalid> for ReductionError {
-    fn from(invalid: Invalid) -> Self {
-        Self::Case(invalid)
-    }
 }
 
 /// Finds the factor of safety of a case; `hear` is called with each trial as it ends. Limit analysis of the same model

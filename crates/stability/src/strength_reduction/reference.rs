@@ -50,7 +50,12 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
         }
         simulation.next_stage()?;
     }
-    warnings.extend(slide(&simulation).map(slips_anyhow));
+    warnings.extend(slide(&simulation).map(|slip| {
+        format!(
+            "the static stages make joints slip by {slip:.3} m whatever their strength, so blocks have gaps or loads \
+             that move them first: the factor is that of the slope after this slip"
+        )
+    }));
     warnings.extend(simulation.built().warnings.iter().cloned());
     let effort = (simulation.time(), simulation.state().step);
     Ok(Rest { simulation, effort, warnings })
@@ -84,20 +89,6 @@ fn refuse_locked(simulation: &Simulation) -> Result<(), Invalid> {
     Err(Invalid { key: "mesh.size".to_owned(), message })
 }
 
-fn slips_anyhow(slip: f64) -> String {
-    format!(
-        "the static stages make joints slip by {slip:.3} m whatever their strength, so blocks have gaps or loads that \
-         move them first: the factor is that of the slope after this slip"
-    )
-}
-
-/// Gives rock that yields and that no joint cuts the stiffness of its trials; the ratios between rocks stay.
-fn soften(case: &mut Case) {
-    let least = case.least_stiffness().filter(|least| case.is_whole() && *least > STIFFEST);
-    let share = least.map_or(1.0, |least| STIFFEST / least);
-    case.rocks.values_mut().for_each(|rock| rock.young *= share);
-}
-
 /// The case without its dynamic stages, and with a stage for the trials at its end.
 fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
     let mut case = with_support_forces(case);
@@ -122,7 +113,10 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
     if case.loads.iter().any(|load| load.table.is_some()) {
         warnings.push("loads with time tables go on changing during the trials".into());
     }
-    soften(&mut case);
+    // Rock that yields and that no joint cuts has the stiffness of its trials; the ratios between rocks stay.
+    let least = case.least_stiffness().filter(|least| case.is_whole() && *least > STIFFEST);
+    let share = least.map_or(1.0, |least| STIFFEST / least);
+    case.rocks.values_mut().for_each(|rock| rock.young *= share);
     // Delayed friction holds toppling columns at 2.5 % less than their limit.
     case.solver.friction_delay.get_or_insert(0.0);
     let damping = Some(if case.yields() { DAMPING_YIELDING } else { DAMPING });

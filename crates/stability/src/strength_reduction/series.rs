@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::bracket::Search;
 use super::setting::{Geometry, Setting};
-use super::trial::{Base, Outcome, Rest, Stop};
+use super::trial::{Base, Outcome, Rest};
 use super::{End, Progress, Trial, Verdict};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, SideId};
@@ -135,7 +135,7 @@ impl Trials<'_> {
                         }
                         trials.push(trial);
                     }
-                    Err(stop) => _ = end.get_or_insert(End::from(stop)),
+                    Err(stop) => _ = end.get_or_insert(stop),
                 }
             }
         }
@@ -179,15 +179,6 @@ impl Trials<'_> {
     fn tell(&mut self, trial: &Trial, open: usize) {
         self.made += 1;
         (self.hear)(trial, Progress { trials: self.made, expected: self.made + open });
-    }
-}
-
-impl From<Stop> for End {
-    fn from(stop: Stop) -> Self {
-        match stop {
-            Stop::Interrupted => Self::Interrupted,
-            Stop::Failed(error) => Self::Failed(error),
-        }
     }
 }
 

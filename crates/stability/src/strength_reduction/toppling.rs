@@ -9,7 +9,7 @@ use super::series::{Series, Trials};
 use super::setting::{Geometry, Setting};
 use super::slip::height_and_gravity;
 use super::trial::{Base, Outcome};
-use super::{End, FailingBlock, Reason, Trial, Verdict};
+use super::{FailingBlock, Reason, Trial, Verdict};
 
 /// Acceleration of a nudge over that of gravity.
 const NUDGE: f64 = 0.01;
@@ -58,7 +58,7 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
         }
         Ok((trial, simulation)) => replace(&mut series, vec![trial], Some(simulation)),
         Err(stop) => {
-            series.end = End::from(stop);
+            series.end = stop;
             return (series, None);
         }
     }

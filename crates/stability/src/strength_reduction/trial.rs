@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use super::judge::{self, Sample, Scales, Verdict};
 use super::setting::{Geometry, Setting};
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
-use super::{FailingBlock, Trial};
+use super::{End, FailingBlock, Trial};
 use enmm::geometry::Vector;
 use enmm::model::tables::BlockId;
 use enmm::model::{BoltCondition, BoltState, Ledger, Mechanism, Simulation, StepError, StepReport};
@@ -40,14 +40,6 @@ const LEAN: f64 = 1e-4;
 /// Displacement over that of the slope at rest up to which its real geometry is that of the drawing.
 const AS_DRAWN: f64 = 2.0;
 
-/// Why a trial gave no verdict.
-pub enum Stop {
-    /// The caller stopped it.
-    Interrupted,
-    /// A numerical failure before anything had failed.
-    Failed(StepError),
-}
-
 /// A slope at rest at the end of a stable trial.
 #[derive(Debug, Clone)]
 pub struct Rest {
@@ -57,8 +49,8 @@ pub struct Rest {
     pub simulation: Simulation,
 }
 
-/// A trial with the model at its end.
-pub type Outcome = Result<(Trial, Simulation), Stop>;
+/// A trial with the model at its end, or the end of the search where it gave no verdict.
+pub type Outcome = Result<(Trial, Simulation), End>;
 
 /// A fall of strength to that of a trial, by equal ratios in equal times, so that joints take up their load one after
 /// the other and nothing is thrown (Eq. 60a).
@@ -204,7 +196,7 @@ impl Base {
         let (mut left, steps) = (simulation.steps_in(time), simulation.steps_in(self.scales.window));
         let mut before = simulation.clone();
         while left > 0 && self.farthest([&from, &simulation]) < self.pushed {
-            window(&mut simulation, 1, |_| (), interrupt)?.map_err(Stop::Failed)?;
+            window(&mut simulation, 1, |_| (), interrupt)?.map_err(End::Failed)?;
             left -= 1;
             if left % steps == 0 {
                 if self.farthest([&before, &simulation]) <= self.scales.still_speed * self.scales.window {
@@ -245,7 +237,7 @@ impl Base {
             let last = match window(&mut simulation, steps, act, interrupt)? {
                 Ok(report) => report,
                 Err(error) => {
-                    judged = Some(given_up(&samples, &scales, begun_as.geometry).ok_or(Stop::Failed(error))?);
+                    judged = Some(given_up(&samples, &scales, begun_as.geometry).ok_or(End::Failed(error))?);
                     break;
                 }
             };
@@ -261,6 +253,7 @@ impl Base {
         }
         let (verdict, reason) = judged.unwrap_or((Verdict::Unstable, judge::Reason::Runaway));
         let end = samples.last().copied().unwrap_or_default();
+        let (yields, has_bars) = (yields(&simulation), simulation.state().bolts.iter().any(|bolt| bolt.active));
         let trial = Trial {
             verdict,
             reason,
@@ -273,8 +266,9 @@ impl Base {
             acceleration: judge::acceleration(&samples),
             failing: self.failing(&simulation, verdict),
             loose: self.loose(&simulation),
-            is_far: end.displacement > self.far && !stretches(&simulation),
-            bars_yield: yields(&simulation),
+            // Slip that stretches bars of which none has yielded is elastic.
+            is_far: end.displacement > self.far && (yields || !has_bars),
+            bars_yield: yields,
             steps: begun_as.steps + simulation.state().step - begun,
             ledger_residual: worse(residual, begun_as.ledger_residual),
             wall: begun_as.wall + clock.elapsed().as_secs_f64(),
@@ -380,11 +374,11 @@ fn window(
     steps: u64,
     act: impl Fn(&mut Simulation),
     interrupt: Option<&AtomicBool>,
-) -> Result<Result<StepReport, StepError>, Stop> {
+) -> Result<Result<StepReport, StepError>, End> {
     let mut report = StepReport::default();
     for step in 1..=steps {
         if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-            return Err(Stop::Interrupted);
+            return Err(End::Interrupted);
         }
         act(simulation);
         match simulation.advance(step == steps) {
@@ -407,11 +401,6 @@ fn given_up(samples: &[Sample], scales: &Scales, geometry: Geometry) -> Option<(
 fn yields(simulation: &Simulation) -> bool {
     let yields = |bolt: &BoltState| matches!(bolt.condition(), BoltCondition::Yielded | BoltCondition::Broken);
     simulation.state().bolts.iter().any(yields)
-}
-
-/// Whether bars are there and none has yielded: slip that stretches them is elastic.
-fn stretches(simulation: &Simulation) -> bool {
-    simulation.state().bolts.iter().any(|bolt| bolt.active) && !yields(simulation)
 }
 
 /// Largest displacement (m) of a block's covers between two states of a model.

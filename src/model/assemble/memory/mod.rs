@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_2_PI, PI};
 
 use crate::contact::{DetectionRule, LawId};
 use crate::cover::RegularMesh;
-use crate::geometry::{Arrangement, GeometryError, Point, Vector, polygon};
-use crate::geometry::{VertexId, grid::CellGrid};
+use crate::geometry::grid::CellGrid;
+use crate::geometry::{Arrangement, GeometryError, Point, Segment, Vector, polygon};
 use crate::model::case::{Case, Invalid, JointSet};
 
 use super::points;
@@ -25,19 +25,11 @@ const EDGES_PER_CROSSING: f64 = 2.0;
 const BYTES_PER_PAIR: f64 = 150.0;
 /// Most cells of the lattice along one axis and in its whole parallelogram: edges have numbers of 32 bits.
 const CELLS_MAX: [f64; 2] = [1e9, u32::MAX as f64 / 3.0];
-/// Distance over the snap tolerance below which traces count as one: more than that at which vertices are merged.
-const MERGED: f64 = 4.0;
-/// Sine of an angle: crossings flatter than this may be merged by the noder and are not counted.
-const SLANT: f64 = 0.1;
-/// Most pieces of traces whose crossings are counted one by one.
-const SAMPLE: usize = 2000;
-/// Crossings for each of them from which dead ends, which are no edges in the end, are few.
-const KNIT: usize = 4;
-/// Length over the mesh size at the ends of a trace in which no pieces are expected: dead ends within a triangle.
-const DEAD: f64 = 0.5;
-/// How many times more than the limit an estimate must be to refuse a case: twice as many sides as there may be. What
-/// remains is counted when it has been cut.
-const FLOOD: f64 = 4.0;
+/// Most pieces of traces that are cut for a first look.
+const SAMPLE: usize = 1100;
+/// How many times more than the limit a first look must find to refuse a case: where a bundle of joints is drawn into one
+/// line, a part of it may have some more sides near each other than all (measured: 1.07 times).
+const FLOOD: f64 = 1.25;
 /// Limit over the estimate at a spacing that the remedy names, so that it suffices.
 const ROOM: f64 = 2.0;
 /// Step of the search for such a spacing.
@@ -304,119 +296,29 @@ impl Demand<'_> {
         Invalid { key: "domain".into(), message: format!("{error}{fault}") }
     }
 
-    /// Refuses traces that lie too close to each other in the rock, before they are cut.
-    pub fn check_dense(
-        &self,
-        traces: &[(Vec<Point>, LawId)],
-        tolerance: f64,
-        is_rock: impl Fn(Point) -> bool,
-    ) -> Result<(), Invalid> {
-        self.check_flood(self.dense(traces, tolerance, is_rock))
+    /// Of many pieces of traces some for a first look: when they alone are too close to each other, the others need not
+    /// be cut.
+    pub fn sample(pieces: &[Segment]) -> Option<impl Iterator<Item = &Segment>> {
+        (pieces.len() > SAMPLE).then(|| pieces.iter().step_by(pieces.len().div_ceil(SAMPLE)))
     }
 
-    /// The pieces into which the mesh alone cuts traces; traces that become one at this snap tolerance (m) count once.
-    fn dense(&self, traces: &[(Vec<Point>, LawId)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
-        let (step, merged) = (DetectionRule::default().cutoff * self.size(), MERGED * tolerance);
-        let mut samples = Vec::new();
-        for (points, _) in traces {
-            let ends = [points.first(), points.last()].into_iter().flatten();
-            let is_dead = |p: &Point| ends.clone().any(|end| (p - end).norm() < DEAD * self.size());
-            for [a, b] in points.windows(2).filter_map(|pair| self.within(pair[0], pair[1])) {
-                samples.extend(regularly(a, b, step).filter(|p| !is_dead(p)));
-            }
-        }
-        let (samples, edges) = (distinct(&samples, merged), step * self.mesh_crossings());
-        let near = self.near(&samples, edges);
-        if self.fits(&near) {
-            return near;
-        }
-        // Only traces that would be refused are worth the question where each of their positions lies.
-        self.near(&samples.into_iter().filter(|&position| is_rock(position)).collect::<Vec<_>>(), edges)
-    }
-
-    /// Refuses traces that cross each other too often in the rock, before they are cut.
-    pub fn check_crossings(
-        &self,
-        traces: &[(Vec<Point>, LawId)],
-        tolerance: f64,
-        is_rock: impl Fn(Point) -> bool,
-    ) -> Result<(), Invalid> {
-        self.check_flood(self.crossed(traces, tolerance, is_rock))
-    }
-
-    /// Crossings of traces in the rock, of many traces those of a sample. A crossing makes two edges, of which the half
-    /// is taken, since dead ends are none in the end.
-    fn crossed(&self, traces: &[(Vec<Point>, LawId)], tolerance: f64, is_rock: impl Fn(Point) -> bool) -> Near {
-        let merged = MERGED * tolerance;
-        let pieces: Vec<&[Point]> = traces.iter().flat_map(|(points, _)| points.windows(2)).collect();
-        let count = pieces.len().min(SAMPLE);
-        let sample: Vec<&[Point]> = (0..count).map(|k| pieces[k * pieces.len() / count]).collect();
-        let mut positions = Vec::new();
-        for (k, piece) in sample.iter().enumerate() {
-            let crossed = sample[..k].iter().filter_map(|other| crossing(piece, other, merged));
-            positions.extend(crossed.filter(|&position| is_rock(position)));
-        }
-        let positions = distinct(&positions, merged);
-        if positions.len() < KNIT * count { Near::default() } else { self.near(&positions, 1.0) }
-    }
-
-    /// Refuses edges of an arrangement that lie too close to each other.
+    /// Refuses an arrangement with blocks that are so small beside the mesh size that too many of their sides are near
+    /// each other.
     pub fn check_edges(&self, arrangement: &Arrangement) -> Result<(), Invalid> {
-        self.check_near(self.cut(arrangement))
+        self.check_near(arrangement, 1.0)
     }
 
-    /// The edges of blocks, counted one by one.
-    fn cut(&self, arrangement: &Arrangement) -> Near {
-        let point = |vertex: VertexId| arrangement.points[vertex];
-        let edges = arrangement
-            .edges
-            .iter()
-            .enumerate()
-            .filter(|(k, edge)| edge.label.outline != 0 || edge.label.trace.is_some() && arrangement.in_rock(*k));
-        let positions: Vec<Point> = edges.map(|(_, edge)| (point(edge.a) + point(edge.b)) * 0.5).collect();
-        self.near(&positions, 1.0)
+    /// The same of some pieces for a first look.
+    pub fn check_sample(&self, arrangement: &Arrangement) -> Result<(), Invalid> {
+        self.check_near(arrangement, FLOOD)
     }
 
-    /// How many sides of blocks lie near each other, when at each position there are some edges, with rock and nodes on
-    /// both sides.
-    fn near(&self, positions: &[Point], edges: f64) -> Near {
-        let (cutoff, sides) = (DetectionRule::default().cutoff * self.size(), 2.0 * edges);
-        let grid = CellGrid::new(self.low, self.high, cutoff);
-        let mut counts = vec![0u32; grid.len()];
-        positions.iter().for_each(|&p| counts[grid.cell_of(p)] += 1);
-        let mut near = Near::default();
-        for &p in positions {
-            let mut around = 0.0;
-            grid.visit_square(p, cutoff, |cell| around += sides * f64::from(counts[cell]));
-            let here = around * PI * cutoff * cutoff / (9.0 * grid.area());
-            near.pairs += sides * here;
-            near.densest = if here > near.densest.0 { (here, p) } else { near.densest };
-        }
-        near
-    }
-
-    /// Bytes of a model with these pairs.
-    fn bytes_of(&self, near: &Near) -> f64 {
-        self.lattice_bytes() + near.pairs * BYTES_PER_PAIR
-    }
-
-    fn fits(&self, near: &Near) -> bool {
-        self.bytes_of(near) <= self.limit()
-    }
-
-    /// As [`Demand::check_near`], by an estimate.
-    fn check_flood(&self, estimate: Near) -> Result<(), Invalid> {
-        let sure = Near { pairs: estimate.pairs / FLOOD, ..estimate };
-        if self.fits(&sure) { Ok(()) } else { self.check_near(estimate) }
-    }
-
-    /// Refuses blocks that are so small beside the mesh size that too many of their sides are near each other.
-    fn check_near(&self, near: Near) -> Result<(), Invalid> {
-        if self.fits(&near) {
+    fn check_near(&self, arrangement: &Arrangement, limits: f64) -> Result<(), Invalid> {
+        let Near { pairs, densest: (near, position) } = self.near(arrangement);
+        let bytes = self.lattice_bytes() + pairs * BYTES_PER_PAIR;
+        if bytes <= limits * self.limit() {
             return Ok(());
         }
-        let (pairs, bytes) = (near.pairs, self.bytes_of(&near));
-        let (near, position) = near.densest;
         let message = format!(
             "{} m is so large beside the blocks that {near:.0} of their sides lie within a quarter of it round \
              ({:.6}, {:.6}) m: {pairs:.1e} pairs, a model of about {:.1} GB, above the limit of {:.3} GB: use a mesh \
@@ -429,6 +331,27 @@ impl Demand<'_> {
         );
         Err(Invalid { key: "mesh.size".into(), message })
     }
+
+    /// How many sides of blocks lie near each other: two at the middle of each edge, with rock and nodes on both sides.
+    fn near(&self, arrangement: &Arrangement) -> Near {
+        let edges = arrangement.edges.iter().enumerate();
+        let edges = edges
+            .filter(|(k, edge)| edge.label.outline != 0 || edge.label.trace.is_some() && arrangement.in_rock(*k))
+            .map(|(_, edge)| (arrangement.points[edge.a] + arrangement.points[edge.b]) * 0.5);
+        let (positions, cutoff): (Vec<Point>, _) = (edges.collect(), DetectionRule::default().cutoff * self.size());
+        let grid = CellGrid::new(self.low, self.high, cutoff);
+        let mut counts = vec![0u32; grid.len()];
+        positions.iter().for_each(|&p| counts[grid.cell_of(p)] += 1);
+        let mut near = Near::default();
+        for p in positions {
+            let mut around = 0.0;
+            grid.visit_square(p, cutoff, |cell| around += 2.0 * f64::from(counts[cell]));
+            let here = around * PI * cutoff * cutoff / (9.0 * grid.area());
+            near.pairs += 2.0 * here;
+            near.densest = if here > near.densest.0 { (here, p) } else { near.densest };
+        }
+        near
+    }
 }
 
 impl SetDemand {
@@ -436,47 +359,6 @@ impl SetDemand {
     fn cutting(&self) -> f64 {
         self.area * self.density
     }
-}
-
-/// Positions on a piece at multiples of a step (m) along the axis to which it is nearer, so that pieces that coincide
-/// have the same ones.
-fn regularly(a: Point, b: Point, step: f64) -> impl Iterator<Item = Point> {
-    let along = b - a;
-    let axis = along.iamax();
-    let [first, last] = [(a[axis].min(b[axis]) / step).ceil(), (a[axis].max(b[axis]) / step).floor()];
-    let count = (last - first + 1.0).max(0.0) as usize;
-    (0..count).map(move |k| {
-        let position = (first + k as f64) * step;
-        let mut p = a + along * ((position - a[axis]) / along[axis]);
-        p[axis] = position;
-        p
-    })
-}
-
-/// Positions that stay apart when those within a distance (m) become one.
-fn distinct(positions: &[Point], distance: f64) -> Vec<Point> {
-    let cell = |position: &Point| [position.x / distance, position.y / distance].map(|number| number.round() as i64);
-    let mut cells: Vec<[i64; 2]> = positions.iter().map(cell).collect();
-    cells.sort_unstable();
-    cells.dedup();
-    cells.iter().map(|&[x, y]| Point::new(x as f64, y as f64) * distance).collect()
-}
-
-/// Where two pieces cross each other at an angle, when the ends of each lie at least a distance (m) off the line of the
-/// other.
-fn crossing(first: &[Point], second: &[Point], distance: f64) -> Option<Point> {
-    let [own, other] = [first, second].map(|piece| piece[1] - piece[0]);
-    if own.perp(&other).abs() < SLANT * own.norm() * other.norm() {
-        return None;
-    }
-    let across = |line: &[Point], ends: &[Point]| {
-        let along = line[1] - line[0];
-        let least = distance * along.norm();
-        let [a, b] = [0, 1].map(|k| along.perp(&(ends[k] - line[0])));
-        (a.min(b) < -least && a.max(b) > least).then(|| a / (a - b))
-    };
-    across(first, second)?;
-    across(second, first).map(|at| first[0] + (first[1] - first[0]) * at)
 }
 
 /// Area of a box (m²); none when its ends have changed positions.

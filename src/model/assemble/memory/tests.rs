@@ -61,51 +61,41 @@ fn outline(kind: usize) -> Vec<Point> {
     if kind == 0 { square.map(Point::from).into() } else { ring.map(Point::from).into() }
 }
 
-/// The estimates before cutting are made of samples; the edges of the arrangement are counted. No model that fits by
-/// its edges is refused by an estimate, however its joints lie: in 3600 networks an estimate was at most 1.1 times the
-/// count. Floods are seen: half of the estimates are above a sixteenth of the count.
+/// A part of the pieces, cut alone, has no more sides near each other than all of them, however they lie, so that no
+/// model that fits is refused at the first look; where a bundle is drawn into one line, it has a few more.
 #[test]
-fn no_network_that_fits_when_it_is_cut_is_refused_by_an_estimate() {
+fn no_network_that_fits_when_it_is_cut_is_refused_at_the_first_look() {
     let mut numbers = Numbers(3);
-    let (mut most, mut floods) = (0.0f64, 0);
+    let mut most = 0.0f64;
     for round in 0..300 {
-        let traces: Vec<(Vec<Point>, LawId)> =
-            (0..1 + round % 4).flat_map(|_| numbers.joints()).map(|points| (points, LawId::new(0))).collect();
+        let traces: Vec<Vec<Point>> = (0..1 + round % 4).flat_map(|_| numbers.joints()).collect();
         let (size, rock) = (0.5 + 2.0 * numbers.next(), outline(round % 3));
         let (low, high) = (Point::zeros(), Point::repeat(SIDE));
         let mesh = RegularMesh::new(size, numbers.next(), Point::zeros(), low, high);
-        let mut segments: Vec<Segment> =
-            polygon::sides(&rock).map(|(a, b)| Segment { a, b, label: Label::OUTLINE }).collect();
-        for (k, (points, _)) in traces.iter().enumerate() {
-            segments.extend(points.windows(2).map(|p| Segment {
-                a: p[0],
-                b: p[1],
-                label: Label::trace(TraceId::new(k)),
-            }));
-        }
-        segments.extend(mesh.segments(low, high));
-        let arrangement = arrange(&segments, TOLERANCE).expect("an arrangement");
+        let pieces: Vec<Segment> = (traces.iter().enumerate())
+            .flat_map(|(k, points)| {
+                let label = Label::trace(TraceId::new(k));
+                points.windows(2).map(move |p| Segment { a: p[0], b: p[1], label })
+            })
+            .collect();
+        let cut = |step: usize| {
+            let sides = polygon::sides(&rock).map(|(a, b)| Segment { a, b, label: Label::OUTLINE });
+            let some = pieces.iter().step_by(step).copied();
+            let segments: Vec<Segment> = sides.chain(some).chain(mesh.segments(low, high)).collect();
+            arrange(&segments, TOLERANCE).expect("an arrangement")
+        };
         let at = |memory: f64, act: &dyn Fn(&Demand) -> bool| {
             let case = case(size, memory);
             act(&Demand { case: &case, low, high })
         };
-        let is_rock = |p: Point| polygon::contains(&rock, p);
-        let estimated = |demand: &Demand| {
-            demand.check_dense(&traces, TOLERANCE, is_rock).is_ok()
-                && demand.check_crossings(&traces, TOLERANCE, is_rock).is_ok()
-        };
+        let (all, some) = (cut(1), cut(2 + round % 5));
         let case = case(size, 1.0);
         let demand = Demand { case: &case, low, high };
-        let counted = demand.cut(&arrangement);
-        let bytes = demand.bytes_of(&counted);
-        assert!(at(bytes + 1.0, &|demand| demand.check_edges(&arrangement).is_ok()));
-        assert!(at(bytes + 1.0, &estimated), "round {round}: an estimate refuses {counted:?}");
-        assert!(!at(bytes - 1.0, &|demand| demand.check_edges(&arrangement).is_ok()));
-        let estimate = demand.dense(&traces, TOLERANCE, is_rock).pairs;
-        let estimate = estimate.max(demand.crossed(&traces, TOLERANCE, is_rock).pairs);
-        most = most.max(estimate / counted.pairs);
-        floods += usize::from(FLOOD * FLOOD * estimate > counted.pairs);
+        let [pairs, of_some] = [&all, &some].map(|arrangement| demand.near(arrangement).pairs);
+        let bytes = demand.lattice_bytes() + pairs * BYTES_PER_PAIR;
+        assert!(at(bytes + 1.0, &|demand| demand.check_edges(&all).is_ok()));
+        assert!(!at(bytes - 1.0, &|demand| demand.check_edges(&all).is_ok()));
+        most = most.max(of_some / pairs);
     }
     assert!(most < FLOOD, "{most} times the count");
-    assert!(floods > 150, "the estimates see too few floods: {floods} of 300");
 }

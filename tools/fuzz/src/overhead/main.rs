@@ -4,7 +4,6 @@
 //! All of it is linked into one program, whose hosts take turns. Times are the least of many turns: processor time of
 //! the calling thread, and of threads wall time.
 
-mod count;
 mod host;
 mod model;
 
@@ -15,12 +14,8 @@ use std::time::Instant;
 use engine::cosimulation::Cosimulation;
 use enmm_fmi::table::Version;
 
-use count::{Counting, count};
 use host::{C, Engine, Facade, Host, Imported};
 use model::Model;
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Calls in a turn.
 const CALLS: u32 = 10;
@@ -51,6 +46,12 @@ fn started(model: &Model) -> Cosimulation {
     let mut facade = model.loaded.cosimulation().expect("a model");
     facade.start().expect("an equilibrium");
     facade
+}
+
+/// Allocations of this thread while it does something, and their bytes.
+fn count(act: impl FnOnce()) -> [u64; 2] {
+    let made = allocation_counter::measure(act);
+    [made.count_total, made.bytes_total]
 }
 
 /// Work of a host in one call that is timed.

@@ -30,22 +30,21 @@ type Call = Result<(&'static str, enmm_status), String>;
 
 /// Nothing is in common.
 pub fn make() -> Result<Act, String> {
-    Ok(Box::new(|random, trace| {
-        let mut host = Host::default();
-        let done = (0..CALLS).try_for_each(|_| host.act(random, trace));
-        host.close();
-        done.map(|()| Outcome::Done(host.calls))
-    }))
+    Ok(calls(CALLS, false))
 }
 
 /// Bursts: many cheap calls of the same models, with short steps, where a campaign shall have many calls.
 pub fn bursts() -> Result<Act, String> {
-    Ok(Box::new(|random, trace| {
-        let mut host = Host { is_burst: true, ..Host::default() };
-        let done = (0..BURST).try_for_each(|_| host.act(random, trace));
+    Ok(calls(BURST, true))
+}
+
+fn calls(count: u64, is_burst: bool) -> Act {
+    Box::new(move |random, trace| {
+        let mut host = Host { is_burst, ..Host::default() };
+        let done = (0..count).try_for_each(|_| host.act(random, trace));
         host.close();
         done.map(|()| Outcome::Done(host.calls))
-    }))
+    })
 }
 
 /// A host with models and states, live and dead.

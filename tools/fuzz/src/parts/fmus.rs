@@ -200,10 +200,8 @@ impl Importer<'_> {
             1 => ("free state", self.instance.free_state(&mut state)),
             2 | 3 => {
                 let status = self.instance.restore(state);
-                let time = self.fmu.table.variables.iter().find(|v| v.name == "time").map_or(0, |v| v.reference);
-                let mut buffer = Buffer::new(1);
-                if status == Status::Ok && self.instance.get(Type::Real, &[time], &mut buffer, 1) == Status::Ok {
-                    self.time = buffer.numbers(1)[0];
+                if status == Status::Ok {
+                    self.time = self.fmu.time(self.instance).unwrap_or(self.time);
                 }
                 ("restore", status)
             }

@@ -21,18 +21,7 @@ const OUTLINES: [&[Place]; 5] = [
     &[[0.0, 0.0], [3.0, 0.0], [3.0, 1e-2], [4.0, 1e-2], [4.0, 2.0], [1.0, 2.0], [1.0, 2.5], [0.0, 2.5]],
 ];
 /// End of every case.
-const REST: &str = r#"
-[rock.rock]
-density = 2600
-young = 1e9
-poisson = 0.25
-[joint_law.joint]
-friction_deg = 30
-[[stage]]
-name = "move"
-kind = "dynamic"
-duration = 1.0
-"#;
+const REST: &str = include_str!("network.toml");
 /// Steps of a model.
 const STEPS: usize = 3;
 /// Way of an outline that is drawn onto traces, in snap tolerances.

@@ -181,10 +181,8 @@ impl Patient {
                 }
             }
             Subject::Fmu(fmu, instance) => {
-                let time = fmu.table.variables.iter().find(|v| v.name == "time").map_or(0, |v| v.reference);
-                let mut buffer = Buffer::new(1);
-                instance.get(Type::Real, &[time], &mut buffer, 1);
-                instance.step(buffer.numbers(1)[0], 3.5 * self.dt).0 == Status::Ok
+                let time = fmu.time(*instance).unwrap_or(f64::NAN);
+                instance.step(time, 3.5 * self.dt).0 == Status::Ok
             }
         }
     }

@@ -29,9 +29,6 @@ impl Golden {
     }
 
     /// Reads the table of the repository.
-    ///
-    /// # Errors
-    /// A file that cannot be read or is no such table.
     pub fn read(root: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(root.join(PLACE)).map_err(|error| format!("{PLACE}: {error}"))?;
         Self::parse(&text).ok_or_else(|| format!("{PLACE} is no golden table: `cargo xtask bits --renew` writes one"))
@@ -65,9 +62,6 @@ impl Golden {
     }
 
     /// Writes the table into the repository.
-    ///
-    /// # Errors
-    /// When the file system refuses it.
     pub fn write(&self, root: &Path) -> Result<(), String> {
         std::fs::write(root.join(PLACE), self.text()).map_err(|error| format!("{PLACE}: {error}"))
     }

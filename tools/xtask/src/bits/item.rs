@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use super::{Results, read};
+use super::Results;
 use crate::emulator::Emulator;
 use crate::platform::Platform;
 use crate::repository::{self, Repository};
@@ -19,11 +19,12 @@ pub struct Item {
     pub quick: bool,
     /// Whether it is in the golden table.
     pub golden: bool,
-    act: Act,
+    /// How it is run.
+    pub act: Act,
 }
 
 /// How an item is run.
-enum Act {
+pub enum Act {
     /// An example case, all its stages.
     Run,
     /// A model of `enmm bench` for so much simulated time (s).
@@ -82,11 +83,6 @@ impl Item {
     pub fn version(&self) -> Option<&'static str> {
         if let Act::Fmu(_, version) = self.act { Some(version) } else { None }
     }
-
-    /// Whether it uses the mathematical functions of the system, as the cases of verification problems do.
-    pub fn asks_system(&self) -> bool {
-        matches!(self.act, Act::Verify(_))
-    }
 }
 
 /// Whether an FMU of this version has a folder for a platform beside that of this machine: FMI 2 names no processor.
@@ -129,12 +125,9 @@ pub struct Maker<'a> {
 
 impl Maker<'_> {
     /// Runs an item.
-    ///
-    /// # Errors
-    /// When it does not run, or leaves no results.
     pub fn make(&self, item: &Item) -> Result<Results, String> {
         let place = self.folder.join(item.name);
-        std::fs::create_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))?;
+        repository::make(&place)?;
         let results = match item.act {
             Act::Run => self.run_case(Path::new(&case(item.name)), &place),
             Act::Model(duration) => self.run_case(&self.model_case(item.name, duration)?, &place),
@@ -148,9 +141,6 @@ impl Maker<'_> {
     }
 
     /// Removes the files of an item: frames of all items together would take more than a gigabyte.
-    ///
-    /// # Errors
-    /// When the file system refuses it.
     pub fn forget(&self, item: &Item) -> Result<(), String> {
         repository::remove(&self.folder.join(item.name))
     }
@@ -175,12 +165,12 @@ impl Maker<'_> {
         let mut write = self.repository.command(self.writer);
         repository::capture(write.args(["bench", "--models", name, "--write"]).arg(&folder))?;
         let path = folder.join(name).with_extension("toml");
-        let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+        let text = String::from_utf8_lossy(&repository::read(&path)?).into_owned();
         if !text.contains(ENDLESS) {
             return Err(format!("{}: has no stage with {ENDLESS:?}", path.display()));
         }
         let text = text.replace(ENDLESS, &format!("duration = {duration}\n"));
-        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+        repository::write(&path, text)?;
         Ok(path)
     }
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use super::Verdict;
 use super::place::{Place, complaint, refused};
+use crate::steps::Verdict;
 
 /// Runs that are ended before one may reach its end.
 const KILLS: usize = 3;
@@ -43,7 +43,7 @@ pub fn killed(place: &Place, _round: u64) -> Result<Verdict, String> {
         }
     }
     place.complete("killed").map_err(|harm| format!("{kills} kills after {moments:?} ms: {harm}"))?;
-    Ok(Verdict::Held(format!("{kills} kills after {moments:?} ms, same bits")))
+    Ok(Verdict::Good(format!("{kills} kills after {moments:?} ms, same bits")))
 }
 
 pub fn interrupted(place: &Place, round: u64) -> Result<Verdict, String> {
@@ -64,7 +64,7 @@ pub fn interrupted(place: &Place, round: u64) -> Result<Verdict, String> {
         return Err(format!("{name} left no checkpoint"));
     }
     place.complete("interrupted")?;
-    Ok(Verdict::Held(format!("{name}, status {}, same bits", answer.status.code().unwrap_or_default())))
+    Ok(Verdict::Good(format!("{name}, status {}, same bits", answer.status.code().unwrap_or_default())))
 }
 
 pub fn closed_pipe(place: &Place, _round: u64) -> Result<Verdict, String> {
@@ -78,14 +78,14 @@ pub fn closed_pipe(place: &Place, _round: u64) -> Result<Verdict, String> {
         return Err(format!("ended with {status}"));
     }
     place.compare("pipe")?;
-    Ok(Verdict::Held("status 0, same bits".to_owned()))
+    Ok(Verdict::Good("status 0, same bits".to_owned()))
 }
 
 pub fn full_device(place: &Place, _round: u64) -> Result<Verdict, String> {
     place.fresh("device")?;
     let device = || OpenOptions::new().write(true).open("/dev/full");
     if let Err(error) = device() {
-        return Ok(Verdict::Skipped(format!("/dev/full: {error}")));
+        return Ok(Verdict::LeftOut(format!("/dev/full: {error}")));
     }
     let mut seen = Vec::new();
     for words in [vec!["run", "case.toml", "-o", "device"], vec!["check", "case.toml"], vec!["schema"]] {
@@ -98,34 +98,34 @@ pub fn full_device(place: &Place, _round: u64) -> Result<Verdict, String> {
         }
     }
     place.compare("device")?;
-    Ok(Verdict::Held(format!("run, check, schema: {seen:?}, results whole")))
+    Ok(Verdict::Good(format!("run, check, schema: {seen:?}, results whole")))
 }
 
 pub fn read_only(place: &Place, _round: u64) -> Result<Verdict, String> {
-    let Some(disk) = Disk::new(place, "read-only", "1m") else { return Ok(Verdict::Skipped(NO_DISK.to_owned())) };
+    let Some(disk) = Disk::new(place, "read-only", "1m") else { return Ok(Verdict::LeftOut(NO_DISK.to_owned())) };
     disk.again("ro")?;
     let answer = place.finish(place.start("read-only", None)?)?;
     let seen = refused(&answer, "read-only")?;
     disk.again("rw,size=64m")?;
     place.complete("read-only")?;
-    Ok(Verdict::Held(format!("{seen}; then same bits")))
+    Ok(Verdict::Good(format!("{seen}; then same bits")))
 }
 
 /// The disk has room for a part of the results, more in every round; then it grows and the run goes on.
 pub fn full_disk(place: &Place, round: u64) -> Result<Verdict, String> {
     let room = [64, 160, 256, 384, 512, 640][round as usize % 6];
     let Some(disk) = Disk::new(place, "full", &format!("{room}k")) else {
-        return Ok(Verdict::Skipped(NO_DISK.to_owned()));
+        return Ok(Verdict::LeftOut(NO_DISK.to_owned()));
     };
     let answer = place.finish(place.start("full", None)?)?;
     if answer.status.success() {
-        return place.compare("full").map(|()| Verdict::Held(format!("{room} kB were enough, same bits")));
+        return place.compare("full").map(|()| Verdict::Good(format!("{room} kB were enough, same bits")));
     }
     let seen = refused(&answer, "full")?;
     disk.again("size=64m")?;
     let from = if place.path("full/checkpoint.enmm").exists() { "its checkpoint" } else { "the start" };
     place.complete("full").map_err(|harm| format!("{room} kB, {seen}; then from {from}: {harm}"))?;
-    Ok(Verdict::Held(format!("{room} kB: {seen}; then from {from}, same bits")))
+    Ok(Verdict::Good(format!("{room} kB: {seen}; then from {from}, same bits")))
 }
 
 /// A run whose folder is taken away says so, or had whole results there; never a part of them and a good status.
@@ -139,9 +139,9 @@ pub fn vanished(place: &Place, _round: u64) -> Result<Verdict, String> {
     fs::rename(&folder, away).map_err(|error| error.to_string())?;
     let answer = place.finish(child)?;
     if answer.status.success() {
-        return place.compare("vanished-away").map(|()| Verdict::Held("it was at its end, same bits".to_owned()));
+        return place.compare("vanished-away").map(|()| Verdict::Good("it was at its end, same bits".to_owned()));
     }
-    refused(&answer, "vanished").map(Verdict::Held)
+    refused(&answer, "vanished").map(Verdict::Good)
 }
 
 pub fn no_folder(place: &Place, _round: u64) -> Result<Verdict, String> {
@@ -149,7 +149,7 @@ pub fn no_folder(place: &Place, _round: u64) -> Result<Verdict, String> {
     let answer = place.finish(place.start("case.toml", None)?)?;
     let seen = refused(&answer, "case.toml")?;
     let after = fs::read(place.path("case.toml")).map_err(|error| error.to_string())?;
-    if before == after { Ok(Verdict::Held(seen)) } else { Err("the file was overwritten".to_owned()) }
+    if before == after { Ok(Verdict::Good(seen)) } else { Err("the file was overwritten".to_owned()) }
 }
 
 /// The second run is refused while the first is there, with its number; each leaves the results of a whole run.
@@ -168,7 +168,7 @@ pub fn together(place: &Place, _round: u64) -> Result<Verdict, String> {
         return Err(format!("they ended with {codes:?}: {told:?}"));
     }
     place.compare("together").map_err(|harm| format!("they ended with {codes:?}; {harm}"))?;
-    Ok(Verdict::Held(format!("they ended with {codes:?}, same bits")))
+    Ok(Verdict::Good(format!("they ended with {codes:?}, same bits")))
 }
 
 const NO_DISK: &str = "a disk of its own can only be made by root";

@@ -5,22 +5,13 @@
 mod harm;
 mod place;
 
-use std::time::Instant;
-
 use crate::counts::Counts;
 use crate::repository::Repository;
+use crate::steps::{Verdict, attempt};
 use place::Place;
 
 /// Rounds when no number is given.
 const ROUNDS: u64 = 5;
-
-/// Verdict on a fault that was tried.
-pub enum Verdict {
-    /// The promise holds; the observation.
-    Held(String),
-    /// It cannot be tried here, and why.
-    Skipped(String),
-}
 
 /// A fault: name and what tries it, with a number that differs from round to round.
 type Fault = (&'static str, fn(&Place, u64) -> Result<Verdict, String>);
@@ -55,28 +46,14 @@ pub fn run(repository: &Repository, words: &[&str]) -> Result<(), String> {
 }
 
 /// Tries all faults in each round.
-///
-/// # Errors
-/// When the undisturbed run fails.
 pub fn rounds_of(repository: &Repository, rounds: u64) -> Result<Counts, String> {
     let place = Place::new(repository)?;
     let mut counts = Counts::default();
     for round in 0..rounds {
         for (name, act) in FAULTS {
-            let start = Instant::now();
-            let verdict = act(&place, round);
-            let seconds = start.elapsed().as_secs_f64();
-            match verdict {
-                Ok(Verdict::Held(seen)) => {
-                    counts.passed += 1;
-                    println!("held     {seconds:>5.1} s  {name}: {seen}");
-                }
-                Ok(Verdict::Skipped(why)) => println!("left out {seconds:>5.1} s  {name}: {why}"),
-                Err(harm) => {
-                    counts.failed += 1;
-                    println!("HARM     {seconds:>5.1} s  {name} (round {round}): {harm}");
-                }
-            }
+            let is_held = attempt(["held", "HARM"], &format!("{name} (round {round})"), || act(&place, round));
+            counts.passed += u64::from(is_held == Some(true));
+            counts.failed += u64::from(is_held == Some(false));
         }
     }
     Ok(counts)

@@ -1,12 +1,11 @@
 //! Folders of the runs, the undisturbed results, and what it takes to compare with them.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::repository::{Repository, files_of, remove};
+use crate::repository::{Repository, files_of, fresh, remove, write};
 
 const CASE: &str = include_str!("case.toml");
 /// Results that hold wall times, or the same frames and rows in other pieces.
@@ -26,10 +25,8 @@ pub struct Place {
 impl Place {
     /// Makes the folder and runs the case undisturbed.
     pub fn new(repository: &Repository) -> Result<Self, String> {
-        let folder = repository.target.join("faults");
-        remove(&folder)?;
-        fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        fs::write(folder.join("case.toml"), CASE).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let folder = fresh(repository.target.join("faults"))?;
+        write(&folder.join("case.toml"), CASE)?;
         let mut place =
             Self { program: repository.enmm(), folder, whole: BTreeMap::new(), duration: Duration::default() };
         let start = Instant::now();
@@ -86,9 +83,6 @@ impl Place {
     }
 
     /// Goes on from the checkpoint in `name`, or from the start where there is none, to the end; compares.
-    ///
-    /// # Errors
-    /// When the run fails or its results are others than those of the undisturbed one.
     pub fn complete(&self, name: &str) -> Result<(), String> {
         let checkpoint = self.path(name).join("checkpoint.enmm");
         let answer = self.finish(self.start(name, Some(checkpoint.as_path()).filter(|path| path.exists()))?)?;

@@ -26,17 +26,14 @@ pub struct Strong {
     pub change: Sum,
 }
 
-/// Rows of one kind of cone: each says that a sum is zero, not negative, or part of a second-order cone.
-#[derive(Debug, Clone, Default)]
-struct Rows(Vec<Strong>);
-
-/// Least of unknown 0 under conditions on all unknowns.
+/// Least of unknown 0 under conditions on all unknowns: rows whose sums are zero, not negative, or parts of second-order
+/// cones.
 #[derive(Debug, Clone, Default)]
 pub struct Conic {
     columns: usize,
-    zero: Rows,
-    positive: Rows,
-    cones: Rows,
+    zero: Vec<Strong>,
+    positive: Vec<Strong>,
+    cones: Vec<Strong>,
 }
 
 /// Solution of a program.
@@ -91,17 +88,17 @@ impl Conic {
 
     /// A sum that is zero.
     pub fn is_zero(&mut self, sum: Sum) {
-        self.zero.0.push(sum.into());
+        self.zero.push(sum.into());
     }
 
     /// A sum that is not negative.
     pub fn is_positive(&mut self, sum: Strong) {
-        self.positive.0.push(sum);
+        self.positive.push(sum);
     }
 
     /// The first sum is not below the length of the vector of both others.
     pub fn is_cone(&mut self, sums: [Strong; 3]) {
-        self.cones.0.extend(sums);
+        self.cones.extend(sums);
     }
 
     /// Solves the program; none where the solver finds no solution, with its status.
@@ -110,7 +107,7 @@ impl Conic {
     /// The status with which the solver gave up.
     pub fn solve(&self) -> Result<Solved, SolverStatus> {
         let kinds = [&self.zero, &self.positive, &self.cones];
-        let rows: Vec<&Strong> = kinds.into_iter().flat_map(|rows| &rows.0).collect();
+        let rows: Vec<&Strong> = kinds.into_iter().flatten().collect();
         let (mut row, mut column, mut value) = (Vec::new(), Vec::new(), Vec::new());
         for (k, sum) in rows.iter().enumerate() {
             for &(unknown, by) in sum.now.terms.iter().filter(|(_, by)| *by != 0.0) {
@@ -121,10 +118,10 @@ impl Conic {
         }
         let right: Vec<f64> = rows.iter().map(|sum| sum.now.constant).collect();
         let a = CscMatrix::new_from_triplets(rows.len(), self.columns, row, column, value);
-        let mut cones = vec![SupportedConeT::ZeroConeT(self.zero.0.len())];
-        cones.push(SupportedConeT::NonnegativeConeT(self.positive.0.len()));
-        cones.extend(std::iter::repeat_n(SupportedConeT::SecondOrderConeT(3), self.cones.0.len() / 3));
-        let solution = ACCURACY.least(&a, &right, &cones)?;
+        let mut cones = vec![SupportedConeT::ZeroConeT(self.zero.len())];
+        cones.push(SupportedConeT::NonnegativeConeT(self.positive.len()));
+        cones.extend(std::iter::repeat_n(SupportedConeT::SecondOrderConeT(3), self.cones.len() / 3));
+        let solution = ACCURACY.least(None, &a, &right, &cones)?;
         Ok(self.solved(&rows, &solution))
     }
 
@@ -136,7 +133,7 @@ impl Conic {
         Solved {
             least: solution.x[0],
             slope: rows.iter().zip(&solution.z).map(change).sum(),
-            multipliers: solution.z[..self.zero.0.len()].to_vec(),
+            multipliers: solution.z[..self.zero.len()].to_vec(),
         }
     }
 }

@@ -25,17 +25,29 @@ pub fn program(rock: &Rock, strength: f64) -> Conic {
 
 /// Conditions on the stress along the edge of a triangle, once for both of its sides.
 fn edge(program: &mut Conic, patches: &[Patch], t: usize, k: usize, strength: f64) {
+    let (_, normal) = patches[t].edge(k);
     match patches[t].edges[k] {
         Edge::Rock(other, edge) if t < other => passes(program, patches, [t, other], [k, edge]),
-        Edge::Joint(other, edge, ..) => {
+        Edge::Joint(other, edge, law, pressure) => {
             if t < other && !patches[other].is_held {
                 passes(program, patches, [t, other], [k, edge]);
             }
             if t < other || patches[other].is_held {
-                joint(program, t, &patches[t], k, strength);
+                // The law of the joint at both of its ends; fluid in it takes its share of the pressure.
+                for (end, pressure) in pressure.into_iter().enumerate() {
+                    let [pull, shear] = turned(traction(t, (k + end) % 3, normal), normal);
+                    slips(program, [pull.plus(&Sum::constant(pressure), 1.0), shear], law, strength);
+                }
             }
         }
-        Edge::Outside(..) => outside(program, t, &patches[t], k),
+        Edge::Outside(loads, held) => {
+            for (end, load) in loads.into_iter().enumerate() {
+                let sums = traction(t, (k + end) % 3, normal).into_iter().enumerate();
+                for (axis, sum) in sums.filter(|(axis, _)| !held[*axis]) {
+                    program.is_zero(sum.plus(&Sum::constant(-load[axis]), 1.0));
+                }
+            }
+        }
         Edge::Rock(..) => {}
     }
 }
@@ -58,25 +70,5 @@ fn passes(program: &mut Conic, patches: &[Patch], [t, other]: [usize; 2], [k, ed
         let own = traction(t, (k + end) % 3, normal);
         let across = traction(other, (edge + 1 - end) % 3, normal);
         own.into_iter().zip(&across).for_each(|(own, across)| program.is_zero(own.plus(across, -1.0)));
-    }
-}
-
-fn outside(program: &mut Conic, t: usize, patch: &Patch, k: usize) {
-    let Edge::Outside(loads, held) = patch.edges[k] else { return };
-    let (_, normal) = patch.edge(k);
-    for (end, load) in loads.into_iter().enumerate() {
-        for (axis, sum) in traction(t, (k + end) % 3, normal).into_iter().enumerate().filter(|(axis, _)| !held[*axis]) {
-            program.is_zero(sum.plus(&Sum::constant(-load[axis]), 1.0));
-        }
-    }
-}
-
-/// The law of a joint at both of its ends; fluid in it takes its share of the pressure.
-fn joint(program: &mut Conic, t: usize, patch: &Patch, k: usize, strength: f64) {
-    let Edge::Joint(_, _, law, pressure) = patch.edges[k] else { return };
-    let (_, normal) = patch.edge(k);
-    for (end, pressure) in pressure.into_iter().enumerate() {
-        let [pull, shear] = turned(traction(t, (k + end) % 3, normal), normal);
-        slips(program, [pull.plus(&Sum::constant(pressure), 1.0), shear], law, strength);
     }
 }

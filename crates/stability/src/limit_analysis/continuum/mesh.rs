@@ -77,22 +77,13 @@ impl Mesh {
         let lines = drawing.sides.iter().enumerate().map(|(side, s)| Line { ends: s.ends, side }).collect();
         let mut mesh = Self { points: drawing.points.clone(), lines, triangles: Vec::new() };
         let length_at = |p: Point| 1.52 * area_at(p).sqrt();
-        while mesh.split(|mesh, line| {
-            let [a, b] = mesh.ends(line);
-            (b - a).norm() > LONG * length_at((a + b) / 2.0)
-        }) {}
+        while mesh.split_where(|_, [a, b]| (b - a).norm() > LONG * length_at((a + b) / 2.0)) {}
         for _ in 0..PASSES {
             mesh.triangulate(drawing)?;
             let entered = mesh.entered();
-            let splits = |mesh: &Self, line: &Line, k: usize| {
-                let [a, b] = mesh.ends(line);
-                entered[k] && (b - a).norm() > SHORT * length_at((a + b) / 2.0)
-            };
-            let before = mesh.clone();
-            if mesh.split_where(|k, line| splits(&before, line, k)) {
-                continue;
-            }
-            if !mesh.insert(&area_at) {
+            let is_split =
+                |k: usize, [a, b]: [Point; 2]| entered[k] && (b - a).norm() > SHORT * length_at((a + b) / 2.0);
+            if !mesh.split_where(is_split) && !mesh.insert(&area_at) {
                 break;
             }
         }
@@ -206,30 +197,20 @@ impl Mesh {
         (a + b + c) / 3.0
     }
 
-    fn split(&mut self, is_long: impl Fn(&Self, &Line) -> bool) -> bool {
-        let long: Vec<bool> = self.lines.iter().map(|line| is_long(self, line)).collect();
-        self.split_where(|k, _| long[k])
-    }
-
-    /// Splits lines; whether there were any.
-    fn split_where(&mut self, splits: impl Fn(usize, &Line) -> bool) -> bool {
+    /// Splits lines with these ends (m) in the middle; whether there were any.
+    fn split_where(&mut self, splits: impl Fn(usize, [Point; 2]) -> bool) -> bool {
         let count = self.lines.len();
         for k in 0..count {
             let line = self.lines[k];
-            if splits(k, &line) {
-                self.points.push(self.middle(&line));
+            let [a, b] = self.ends(&line);
+            if splits(k, [a, b]) {
+                self.points.push((a + b) / 2.0);
                 let at = self.points.len() - 1;
                 self.lines[k].ends[1] = at;
                 self.lines.push(Line { ends: [at, line.ends[1]], ..line });
             }
         }
         self.lines.len() > count
-    }
-
-    /// Where a line is split: in the middle.
-    fn middle(&self, line: &Line) -> Point {
-        let [a, b] = self.ends(line);
-        (a + b) / 2.0
     }
 
     /// Lines in whose circle the corner of a triangle beside them lies.
@@ -325,7 +306,17 @@ impl Mesh {
         let lines: Vec<[Option<usize>; 3]> =
             corners.iter().map(|c| [0, 1, 2].map(|k| line_of.get(&edge(c, k)).copied())).collect();
         let blocks = self.blocks(drawing, &corners, &lines, &across);
-        self.keep_rock(&corners, &lines, &across, &blocks);
+        debug_assert!(corners.iter().all(|c| {
+            let [a, b, c] = c.map(|k| self.points[k]);
+            orientation(a, b, c) > 0.0
+        }));
+        let mut places = 0..;
+        let place: Vec<Option<usize>> = blocks.iter().map(|block| block.and_then(|_| places.next())).collect();
+        let triangle = |face: usize| {
+            let across = across[face].map(|next| next.and_then(|next| place[next]));
+            Some(Triangle { corners: corners[face], block: blocks[face]?, lines: lines[face], across })
+        };
+        self.triangles = (0..corners.len()).filter_map(triangle).collect();
         Ok(())
     }
 
@@ -360,34 +351,5 @@ impl Mesh {
             }
         }
         blocks
-    }
-
-    fn keep_rock(
-        &mut self,
-        corners: &[[usize; 3]],
-        lines: &[[Option<usize>; 3]],
-        across: &[[Option<usize>; 3]],
-        blocks: &[Option<BlockId>],
-    ) {
-        let mut count = 0;
-        let place: Vec<Option<usize>> = blocks
-            .iter()
-            .map(|block| {
-                block.map(|_| {
-                    count += 1;
-                    count - 1
-                })
-            })
-            .collect();
-        let turn = |face: usize| {
-            let [a, b, c] = corners[face].map(|k| self.points[k]);
-            orientation(a, b, c)
-        };
-        debug_assert!((0..corners.len()).all(|face| turn(face) > 0.0));
-        let triangle = |face: usize| {
-            let across = across[face].map(|next| next.and_then(|next| place[next]));
-            Some(Triangle { corners: corners[face], block: blocks[face]?, lines: lines[face], across })
-        };
-        self.triangles = (0..corners.len()).filter_map(triangle).collect();
     }
 }

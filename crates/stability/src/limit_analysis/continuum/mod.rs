@@ -158,10 +158,6 @@ fn unsolved(triangles: usize, status: impl std::fmt::Debug) -> BoundError {
     BoundError::UnsolvedRock { triangles, status: format!("{status:?}") }
 }
 
-fn close(mesh::Close(at): mesh::Close) -> BoundError {
-    BoundError::Close { x: at.x, y: at.y }
-}
-
 /// The upper bound on the finest mesh.
 struct Upper {
     mesh: Mesh,
@@ -257,7 +253,8 @@ impl Ground {
             let turns = |&(at, least): &(Point, f64)| (SECTOR * (p - at).norm().max(least)).powi(2);
             about.iter().map(turns).fold(scale * sizes.at(p), f64::min)
         };
-        let mut mesh = Mesh::new(&self.drawing, area).map_err(close)?;
+        let mut mesh =
+            Mesh::new(&self.drawing, area).map_err(|mesh::Close(at)| BoundError::Close { x: at.x, y: at.y })?;
         mesh.fan(turning);
         Ok(mesh)
     }
