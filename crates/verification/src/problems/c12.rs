@@ -4,34 +4,21 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::StepReport;
 
 use crate::parts::turn;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C12",
     title: "Bolt that holds a block on a plane",
     source: "Limit equilibrium: T = W·(sin a − cos a·tan φ)/(cos δ + sin δ·tan φ) for a bolt that pulls upslope at δ \
-    into \
-             the plane; the least tension is searched by bisection on the pretension of a soft bar; catches wrong \
+             into the plane; the least tension is searched by bisection on the pretension of a soft bar; catches wrong \
              directions and sizes of bolt forces",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 45.0, range: [10.0, 60.0], doc: "dip of the plane" },
-        Parameter {
-            name: "phi_deg",
-            unit: "°",
-            default: 30.0,
-            range: [0.0, 50.0],
-            doc: "friction angle, below the dip",
-        },
-        Parameter { name: "weight", unit: "kN/m", default: 100.0, range: [1.0, 1e4], doc: "weight of the block" },
-        Parameter {
-            name: "delta_deg",
-            unit: "°",
-            default: 40.0,
-            range: [0.0, 100.0],
-            doc: "one more angle of the bolt",
-        },
-        Parameter { name: "spacing", unit: "m", default: 1.0, range: [0.2, 10.0], doc: "distance between bolts" },
-        Parameter { name: "mesh", unit: "m", default: 0.6, range: [0.2, 1.0], doc: "mesh size" },
+        Parameter::new("a_deg", "°", 45.0, [10.0, 60.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 30.0, [0.0, 50.0], "friction angle, below the dip"),
+        Parameter::new("weight", "kN/m", 100.0, [1.0, 1e4], "weight of the block"),
+        Parameter::new("delta_deg", "°", 40.0, [0.0, 100.0], "one more angle of the bolt"),
+        Parameter::new("spacing", "m", 1.0, [0.2, 10.0], "distance between bolts"),
+        Parameter::new("mesh", "m", 0.6, [0.2, 1.0], "mesh size"),
     ],
     quick: true,
     implicit: true,
@@ -182,21 +169,18 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         found.push([delta.to_degrees(), computed]);
         let reason = "bisection to 3e-4; a block counts as sliding from 2e-4 g, which is up to 1e-3 of the tension";
         let row = Row::new(format!("least tension, {name}"), "kN/m", computed, exact(delta));
-        rows.push(row.within(Tolerance::Absolute(2e-3 * exact(delta).max(0.1 * weight)), reason));
+        rows.push(row.absolute(2e-3 * exact(delta).max(0.1 * weight), reason));
         if delta == extra {
             rows.push(Row::ledger(&report));
         }
     }
     let curve = (0..=100).map(f64::from).map(|d| [d, exact(d.to_radians())]).filter(|p| p[1].is_finite()).collect();
-    let plot = Plot {
-        title: "Least tension for a factor of safety of 1".into(),
-        axes: ["angle of the bolt into the plane (°)".into(), "tension (kN/m)".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "limit equilibrium".into(), points: curve, marks: false },
-            Series { name: "computed".into(), points: found, marks: true },
-        ],
-    };
+    let plot = Plot::new(
+        "Least tension for a factor of safety of 1",
+        ["angle of the bolt into the plane (°)", "tension (kN/m)"],
+    )
+    .line("limit equilibrium", curve)
+    .marks("computed", found);
     Ok(Outcome { rows, plots: vec![plot] })
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::strip::{Motion, Rock, Strip, Wave, run as run_strip};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D1",
@@ -11,18 +11,12 @@ pub const PROBLEM: Problem = Problem {
     source: "Displacement discontinuity: |T| = 2K/√(4K²+1), |R| = 1/√(4K²+1) with K = k/(zω), and v_t/v0 = \
              1 − exp(−2kt/z) behind a step. Catches joint springs that damp, lag or scale with the mesh",
     parameters: &[
-        Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e5, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
-        Parameter { name: "length", unit: "m", default: 50.0, range: [1.0, 1e5], doc: "wave length" },
-        Parameter {
-            name: "elements",
-            unit: "",
-            default: 60.0,
-            range: [30.0, 200.0],
-            doc: "mesh sizes in a wave length",
-        },
-        Parameter { name: "k", unit: "", default: 1.0, range: [0.02, 50.0], doc: "one more ratio K" },
+        Parameter::new("young", "Pa", 50e9, [1e5, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("density", "kg/m³", 2650.0, [1.0, 1e5], "density"),
+        Parameter::new("length", "m", 50.0, [1.0, 1e5], "wave length"),
+        Parameter::new("elements", "", 60.0, [30.0, 200.0], "mesh sizes in a wave length"),
+        Parameter::new("k", "", 1.0, [0.02, 50.0], "one more ratio K"),
     ],
     quick: true,
     implicit: false,
@@ -147,10 +141,7 @@ impl Joint {
             for ((k, which), exact) in ["|T|", "|R|"].into_iter().enumerate().zip(coefficients(ratio)) {
                 found[k].push([ratio, measured[k]]);
                 let most = 0.02 * if self.across { 1.0 } else { exact };
-                outcome.rows.push(
-                    Row::new(format!("{name}: {which}"), "", measured[k], exact)
-                        .within(Tolerance::Absolute(most), reason),
-                );
+                outcome.rows.push(Row::new(format!("{name}: {which}"), "", measured[k], exact).absolute(most, reason));
             }
             outcome.rows.push(Row::ledger(&motion.last));
         }
@@ -158,21 +149,20 @@ impl Joint {
             (0..=60).map(|i| 0.05 * 10f64.powf(f64::from(i) / 25.0)).map(|r| [r, coefficients(r)[k]]).collect()
         };
         let [t, r] = found;
-        let line = |name: &str, points, marks| Series { name: name.into(), points, marks };
         if self.across {
             return Ok(());
         }
-        outcome.plots.push(Plot {
-            title: format!("D1: {wave:?} wave through one joint"),
-            axes: ["K = k/(zω)".into(), "share of the incident amplitude".into()],
-            logarithmic: [true, false],
-            series: vec![
-                line("|T|, exact", exact(0), false),
-                line("|R|, exact", exact(1), false),
-                line("|T|, computed", t, true),
-                line("|R|, computed", r, true),
-            ],
-        });
+        outcome.plots.push(
+            Plot::new(
+                format!("D1: {wave:?} wave through one joint"),
+                ["K = k/(zω)", "share of the incident amplitude"],
+            )
+            .line("|T|, exact", exact(0))
+            .line("|R|, exact", exact(1))
+            .marks("|T|, computed", t)
+            .marks("|R|, computed", r)
+            .logarithmic([true, false]),
+        );
         Ok(())
     }
 
@@ -196,15 +186,16 @@ impl Joint {
             let time = arrival + 0.5 * rise + share / rate;
             outcome.rows.push(
                 Row::new(format!("{wave:?}, step: v_t/v0 {share}·z/2k after its middle"), "", at(time), exact(time))
-                    .within(Tolerance::Absolute(0.02), reason),
+                    .absolute(0.02, reason),
             );
         }
-        outcome.plots.push(Plot {
-            title: format!("D1: {wave:?} velocity step behind one joint"),
-            axes: ["time (s)".into(), "v_t/v0".into()],
-            series: Series::beside("exact", exact, motion.points(&shares)),
-            ..Plot::default()
-        });
+        outcome.plots.push(
+            Plot::new(format!("D1: {wave:?} velocity step behind one joint"), ["time (s)", "v_t/v0"]).beside(
+                "exact",
+                exact,
+                motion.points(&shares),
+            ),
+        );
         Ok(())
     }
 }

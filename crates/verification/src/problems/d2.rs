@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::strip::{Motion, Rock, Strip, Wave, run as run_strip};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D2",
@@ -12,18 +12,12 @@ pub const PROBLEM: Problem = Problem {
              T² and R² are the mean squares of the clipped sine and of what was clipped off, over that of the sine, \
              and A² = 1 − T² − R². Catches slip that lags, strength that scales with the mesh, and energy made by slip",
     parameters: &[
-        Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e5, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
-        Parameter { name: "length", unit: "m", default: 50.0, range: [1.0, 1e5], doc: "wave length" },
-        Parameter {
-            name: "elements",
-            unit: "",
-            default: 80.0,
-            range: [40.0, 200.0],
-            doc: "mesh sizes in a wave length",
-        },
-        Parameter { name: "ratio", unit: "", default: 0.5, range: [0.05, 0.9], doc: "strength over incident stress" },
+        Parameter::new("young", "Pa", 50e9, [1e5, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("density", "kg/m³", 2650.0, [1.0, 1e5], "density"),
+        Parameter::new("length", "m", 50.0, [1.0, 1e5], "wave length"),
+        Parameter::new("elements", "", 80.0, [40.0, 200.0], "mesh sizes in a wave length"),
+        Parameter::new("ratio", "", 0.5, [0.05, 0.9], "strength over incident stress"),
     ],
     quick: true,
     implicit: false,
@@ -102,9 +96,7 @@ fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Tro
     let found = [through.sqrt(), reflected.sqrt(), (1.0 - through - reflected).max(0.0).sqrt()];
     let reason = "2 % asked; the joint's own stiffness is 1000 zω, the mesh rounds the kinks of the clipped sine";
     for ((which, exact), found) in ["T", "R", "A"].into_iter().zip(coefficients(ratio)).zip(found) {
-        outcome
-            .rows
-            .push(Row::new(format!("{name}: {which}"), "", found, exact).within(Tolerance::Relative(0.02), reason));
+        outcome.rows.push(Row::new(format!("{name}: {which}"), "", found, exact).relative(0.02, reason));
     }
     outcome.rows.push(Row::ledger(&motion.last));
     let stress: Vec<f64> = motion.velocity[1].iter().map(|v| v / VELOCITY).collect();
@@ -113,12 +105,10 @@ fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Tro
         let phase = if t > delay { (2.0 * PI * (t - delay) / period).sin() } else { 0.0 };
         phase.clamp(-ratio, ratio)
     };
-    outcome.plots.push(Plot {
-        title: format!("D2: stress that passes, {name}"),
-        axes: ["time (s)".into(), "stress over that of the incident wave".into()],
-        series: Series::beside("clipped sine", clipped, motion.points(&stress)),
-        ..Plot::default()
-    });
+    outcome.plots.push(
+        Plot::new(format!("D2: stress that passes, {name}"), ["time (s)", "stress over that of the incident wave"])
+            .beside("clipped sine", clipped, motion.points(&stress)),
+    );
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use enmm_stability::limit_analysis::{Bound, bound};
 
 use super::block::G;
 use crate::parts::turn;
-use crate::{Row, Setup, Tolerance, Trouble};
+use crate::{Row, Setup, Trouble};
 
 /// Points (m).
 type Line = Vec<[f64; 2]>;
@@ -85,14 +85,13 @@ const REASON: &str = "the bracket is 2e-5 wide, and 2e-7 of a block's weight cou
 
 /// Both bounds beside one closed form.
 pub fn factor_rows(name: &str, bound: &Bound, exact: f64) -> [Row; 2] {
-    let row = |kind: &str, factor: f64| {
-        Row::new(format!("{kind} factor{name}"), "", factor, exact).within(Tolerance::Relative(3e-4), REASON)
-    };
+    let row =
+        |kind: &str, factor: f64| Row::new(format!("{kind} factor{name}"), "", factor, exact).relative(3e-4, REASON);
     [row("associated", bound.associated.factor.value()), row("level tops'", bound.level_tops.factor.value())]
 }
 
 /// A slope that equilibrium holds however weak its joints: the inverse of the factor is zero.
 pub fn endless_row(quantity: &str, factor: f64) -> Row {
     let reason = "factors beyond 1000 are told from no end";
-    Row::new(format!("inverse of the {quantity}"), "", factor.recip(), 0.0).within(Tolerance::AtMost(1e-3), reason)
+    Row::new(format!("inverse of the {quantity}"), "", factor.recip(), 0.0).at_most(1e-3, reason)
 }
