@@ -13,11 +13,10 @@ const DENSITY: f64 = 2500.0;
 /// A block of 2 m × 0.8 m that hangs below a held slab, from which a smooth joint parts it, and bolts.
 fn roof(bolts: &str, stages: &str) -> String {
     format!(
-        "title = \"roof\"\n[domain]\noutline = [[-1, 0], [3, 0], [3, 1], [-1, 1]]\nislands = [[[0, -0.8], [2, -0.8], \
-        [2, \
-         0], [0, 0]]]\n[mesh]\nsize = 0.5\norigin = [0.031, 0.017]\n[joint_law.joint]\nfriction_deg = \
-         0.0\n[rock.rock]\n\
-         density = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n[[fix]]\nblock = [-0.5, 0.5]\n{bolts}{stages}"
+        "title = \"roof\"\n[domain]\noutline = [[-1, 0], [3, 0], [3, 1], [-1, 1]]\n\
+         islands = [[[0, -0.8], [2, -0.8], [2, 0], [0, 0]]]\n[mesh]\nsize = 0.5\norigin = [0.031, 0.017]\n\
+         [joint_law.joint]\nfriction_deg = 0.0\n[rock.rock]\ndensity = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n\
+         [[fix]]\nblock = [-0.5, 0.5]\n{bolts}{stages}"
     )
 }
 

@@ -129,9 +129,8 @@ fn notch_and_slot_hold_a_square() {
 /// A sharp wedge drops between two loose blocks: it drives them apart and stays between them.
 #[test]
 fn a_thin_wedge_drives_two_blocks_apart() {
-    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], \
-                   [[5.02, 0.001], [6.02, 0.001], [6.02, 2.0], [5.02, 2.0]], \
-                   [[5.01, 1.99], [5.16, 3.5], [4.86, 3.5]]]";
+    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], [[5.02, 0.001], [6.02, 0.001], [6.02, 2.0], \
+                   [5.02, 2.0]], [[5.01, 1.99], [5.16, 3.5], [4.86, 3.5]]]";
     let mut simulation = case(FLAT, islands, 2.0, &thrown([5.01, 3.0], [0.0, -3.0]));
     let worst = run(&mut simulation);
     let [left, right, wedge] = [[4.5, 1.0], [5.5, 1.0], [5.01, 3.0]].map(|p| motion(&simulation, p).0);

@@ -141,9 +141,8 @@ fn a_corner_strikes_a_floor() {
 /// Half or twice any constant of contact: corners and wedges that come in fast stay outside.
 #[test]
 fn no_constant_decides_who_enters() {
-    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], \
-                   [[5.002, 0.001], [6.002, 0.001], [6.002, 2.0], [5.002, 2.0]], \
-                   [[5.0014, 2.005], [5.201, 3.5], [4.801, 3.5]]]";
+    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], [[5.002, 0.001], [6.002, 0.001], [6.002, \
+                   2.0], [5.002, 2.0]], [[5.0014, 2.005], [5.201, 3.5], [4.801, 3.5]]]";
     for (name, rule) in varied_rules() {
         let more = thrown([5.001, 3.0], [0.0, -10.0]);
         let mut simulation = case(FLAT, islands, 20.0, 0.05, &more).with_entrance(rule);

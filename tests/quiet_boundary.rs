@@ -13,12 +13,10 @@ const STATIC: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration 
 fn block(stages: &str, extra: &str) -> Simulation {
     simulation(&format!(
         "title = \"quiet\"\n[domain]\noutline = [[0.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0]]\n[mesh]\n\
-         size = 1.1\n\
-         angle_deg = 11\n[[joint]]\npoints = [[-1.0, 4.0], [13.0, 4.6]]\n[joint_law.joint]\nfriction_deg = 35.0\n\
-         [rock.rock]\ndensity = 2500.0\nyoung = 1e9\npoisson = 0.25\n[[quiet]]\nedge = [[0.0, 0.0], [12.0, 0.0]]\n\
-         {extra}\
-         [[quiet]]\nedge = [[12.0, 0.0], [12.0, 8.0]]\naxes = \"x\"\n[[free_field]]\nedge = [[0.0, 0.0], [0.0, 8.0]]\n\
-         {stages}[[monitor]]\nname = \"top\"\npoint = [6.0, 7.9]\n"
+         size = 1.1\nangle_deg = 11\n[[joint]]\npoints = [[-1.0, 4.0], [13.0, 4.6]]\n[joint_law.joint]\n\
+         friction_deg = 35.0\n[rock.rock]\ndensity = 2500.0\nyoung = 1e9\npoisson = 0.25\n[[quiet]]\n\
+         edge = [[0.0, 0.0], [12.0, 0.0]]\n{extra}[[quiet]]\nedge = [[12.0, 0.0], [12.0, 8.0]]\naxes = \"x\"\n\
+         [[free_field]]\nedge = [[0.0, 0.0], [0.0, 8.0]]\n{stages}[[monitor]]\nname = \"top\"\npoint = [6.0, 7.9]\n"
     ))
 }
 
@@ -57,9 +55,8 @@ fn in_situ_stress_is_borne_from_the_start() {
     let mut simulation = simulation(&format!(
         "title = \"in situ\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 4], [0, 4]]\n[mesh]\nsize = 0.7\nangle_deg = 9\n\
          [rock.rock]\ndensity = 2600\nyoung = 1e9\npoisson = 0.25\n[gravity]\ny = 0\n[in_situ]\nsxx = -1e6\n\
-         syy = -2e6\n\
-         sxy = 2e5\n{quiets}[[free_field]]\nedge = [[0, 0], [0, 4]]\naxes = \"xy\"\n{}\
-         [[monitor]]\nname = \"middle\"\npoint = [1.9, 3.0]\n",
+         syy = -2e6\nsxy = 2e5\n{quiets}[[free_field]]\nedge = [[0, 0], [0, 4]]\naxes = \"xy\"\n{}[[monitor]]\n\
+         name = \"middle\"\npoint = [1.9, 3.0]\n",
         dynamic("wait", 0.05, 0.0)
     ));
     run_stage(&mut simulation);

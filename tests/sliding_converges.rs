@@ -63,10 +63,9 @@ impl Stack {
         format!(
             "title = \"slide\"\n[gravity]\nx = {along}\ny = {down}\n[domain]\njoint_law = \"plane\"\n\
              outline = [[0, 0], [{end}, 0], [{end}, {depth}], [{right}, {depth}], [{right}, {top}], [{left}, {top}], \
-             [{left}, {depth}], [0, {depth}]]\n\
-             [mesh]\nsize = {mesh}\nangle_deg = 7.0\norigin = [0.13, 0.29]\n\
-             {joints}[joint_law.plane]\nfriction_deg = {FRICTION}\n{below}[solver]\ndt_max = {dt_max:e}\n{delay}\
-             [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n{}{}",
+             [{left}, {depth}], [0, {depth}]]\n[mesh]\nsize = {mesh}\nangle_deg = 7.0\norigin = [0.13, 0.29]\n\
+             {joints}[joint_law.plane]\nfriction_deg = {FRICTION}\n{below}[solver]\ndt_max = {dt_max:e}\n\
+             {delay}[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n{}{}",
             rock(5e9, 2600.0),
             dynamic("slide", 100.0, 0.05)
         )
