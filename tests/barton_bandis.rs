@@ -2,7 +2,7 @@
 //! strength factor on it, and errors for keys that do not belong to it.
 
 use crate::common::claims::{advance, assert_ledger, block_at};
-use crate::common::simulation;
+use crate::common::{refusal, simulation};
 use enmm::geometry::Vector;
 use enmm::internals::contact::Closure;
 use enmm::model::Simulation;
@@ -101,15 +101,11 @@ fn shear_strength_is_that_of_the_law_and_follows_the_factor() {
 }
 
 fn refused(law: &str) -> String {
-    let text = format!(
+    refusal(&format!(
         "title = \"t\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 1]]\n[mesh]\nsize = 0.5\n[rock.r]\ndensity = \
         1.0\nyoung = \
          1e9\npoisson = 0.2\n[joint_law.j]\n{law}\n[[stage]]\nname = \"s\"\nkind = \"dynamic\"\nduration = 1.0\n"
-    );
-    match enmm_io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
-        Ok(loaded) => loaded.case.validate().expect_err("it is refused").to_string(),
-        Err(error) => error.to_string(),
-    }
+    ))
 }
 
 #[test]

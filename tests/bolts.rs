@@ -2,9 +2,8 @@
 //! checkpoints to the bit, and with a closed ledger.
 
 use crate::common::claims::{advance, assert_ledger, block_at};
-use crate::common::{run_stage, simulation};
+use crate::common::{refusal, run_stage, simulation};
 use enmm::model::Simulation;
-use enmm::model::case::Case;
 
 const G: f64 = 9.81;
 const AREA: f64 = 2.0 * 0.8;
@@ -143,17 +142,6 @@ fn a_saved_state_goes_on_with_the_same_bits() {
     assert_eq!(sim.state(), other.state());
 }
 
-fn refused(bolts: &str, stages: &str) -> String {
-    let text = roof(bolts, stages);
-    match enmm_io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
-        Err(error) => error.to_string(),
-        Ok(loaded) => {
-            let case: Case = loaded.case;
-            Simulation::new(case).map(|_| ()).expect_err("it is refused").to_string()
-        }
-    }
-}
-
 #[test]
 fn bolts_that_cannot_be_are_errors() {
     let named = |more: &str| bolt(1.0, 2e11, more);
@@ -168,7 +156,7 @@ fn bolts_that_cannot_be_are_errors() {
         (named("free_length = 0.1"), SETTLE.into(), "bolt[0].free_length"),
         (named("name = \"a\"\nactive = false"), install("a") + "excavate = [[1.0, -0.4]]\n", "has been removed"),
     ] {
-        let message = refused(&bolts, &stages);
+        let message = refusal(&roof(&bolts, &stages));
         assert!(message.contains(words), "{message}");
     }
 }

@@ -2,7 +2,7 @@
 //! default step a block of 12 by 6 m slid 21 times as far as Coulomb friction lets it.
 
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step};
 
 const SLOPE: f64 = 35.0;
 const FRICTION: f64 = 40.0;
@@ -36,9 +36,8 @@ fn distance(dt_max: f64, velocity: f64) -> f64 {
     let mut state = simulation.state().clone();
     state.velocity[covers].iter_mut().for_each(|v| v.x += velocity);
     simulation.restore(state);
-    for _ in 0..simulation.steps_in(3.0) {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
+    let steps = simulation.steps_in(3.0);
+    step(&mut simulation, steps);
     simulation.block_states()[block].displacement.x - start
 }
 

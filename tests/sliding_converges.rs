@@ -5,7 +5,7 @@ use enmm::geometry::Vector;
 
 use crate::common::extent::by_extent;
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step};
 
 const SLOPE: f64 = 35.0;
 const FRICTION: f64 = 40.0;
@@ -86,9 +86,8 @@ impl Stack {
             state.velocity[covers].iter_mut().for_each(|v| v.x += 1.0);
         }
         simulation.restore(state);
-        for _ in 0..simulation.steps_in(1.5) {
-            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        }
+        let steps = simulation.steps_in(1.5);
+        step(&mut simulation, steps);
         let [slope, friction] = [SLOPE, FRICTION].map(f64::to_radians);
         let exact = 0.5 / (GRAVITY * (slope.cos() * friction.tan() - slope.sin()));
         let end = simulation.block_states();

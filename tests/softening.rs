@@ -1,11 +1,9 @@
 //! Joints that soften take the energy of fracture that their law gives, and have its strength (theory §7).
 
-use std::path::Path;
-
 use enmm::cosimulation::EventKind;
 use enmm::model::Simulation;
 
-use crate::common::{run_stage, simulation};
+use crate::common::{refusal, run_stage, simulation};
 
 /// A1: a bar of two halves, of which the lower one is held and the upper one moves off.
 fn bar(size: f64, half: f64, speed: f64) -> String {
@@ -187,15 +185,8 @@ fn a_brittle_bridge_is_as_long_as_it_is_drawn_on_any_mesh() {
 
 #[test]
 fn a_stage_does_not_switch_the_law_of_a_bridge() {
-    let text = brittle_box(0.2, 8.0);
-    let text = format!("{text}switch_law = [{{ from = \"rock\", to = \"joint\" }}]\n");
-    let loaded = enmm_io::parse_case(&text, "case.toml", Path::new("")).expect("reads");
-    let Err(refusal) = Simulation::new(loaded.case) else { panic!("a law of bridges is switched") };
-    let refusal = refusal.to_string();
-    assert!(
-        refusal.contains("stage[0].switch_law[0].from") && refusal.contains("the law of rock bridges"),
-        "{refusal}"
-    );
+    let told = refusal(&(brittle_box(0.2, 8.0) + "switch_law = [{ from = \"rock\", to = \"joint\" }]\n"));
+    assert!(told.contains("stage[0].switch_law[0].from") && told.contains("the law of rock bridges"), "{told}");
 }
 
 #[test]
