@@ -27,23 +27,9 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn slide(setup: &Setup, planes: u32) -> PlaneSlide {
-    let height = setup.get("height");
-    PlaneSlide {
-        height,
-        crack: 0.0,
-        face: setup.get("face_deg").to_radians(),
-        plane: setup.get("joint_deg").to_radians(),
-        cohesion: setup.get("cohesion"),
-        friction: setup.get("phi_deg").to_radians(),
-        unit_weight: setup.get("density") * G,
-        water_weight: 1e3 * G,
-        water: 0.0,
-        seismic: 0.0,
-        young: setup.get("young"),
-        size: setup.get("mesh") * height,
-        planes,
-        spacing: setup.get("spacing"),
-    }
+    let slide = PlaneSlide::of(setup, setup.get("joint_deg"), setup.get("density") * G);
+    let size = setup.get("mesh") * slide.height;
+    PlaneSlide { young: setup.get("young"), size, planes, spacing: setup.get("spacing"), ..slide }
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {

@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 
-use super::block::{Block, DENSITY, Fate, G, advance, bisect};
+use super::block::{Block, Fate, G, advance, bisect};
 use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, text};
 
 pub const PROBLEM: Problem = Problem {
@@ -142,18 +142,8 @@ fn ratios(setup: &Setup) -> Result<Vec<f64>, Trouble> {
 }
 
 fn block(setup: &Setup, k: f64, friction: f64) -> Block {
-    let h = setup.get("h");
-    Block {
-        base: k * h,
-        height: h,
-        dip: setup.get("a_deg").to_radians(),
-        tilt: 0.0,
-        friction_deg: friction.to_degrees(),
-        young: setup.get("stiffness") * DENSITY * G * h,
-        mesh: setup.get("mesh") * h,
-        horizontal: 0.0,
-        ramp: RAMP * (h / G).sqrt(),
-    }
+    let (h, dip) = (setup.get("h"), setup.get("a_deg").to_radians());
+    Block { dip, friction_deg: friction.to_degrees(), ..Block::level(setup, [k * h, h], RAMP) }
 }
 
 /// The friction angle (rad) from which on the toe does not slip, by bisection.

@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 
-use super::block::{Block, DENSITY, Fate, G, advance, bisect};
+use super::block::{Block, Fate, G, advance, bisect};
 use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -86,18 +86,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
 }
 
 fn block(setup: &Setup) -> Block {
-    let h = setup.get("h");
-    Block {
-        base: setup.get("b"),
-        height: h,
-        dip: 0.0,
-        tilt: 0.0,
-        friction_deg: setup.get("phi_deg"),
-        young: setup.get("stiffness") * DENSITY * G * h,
-        mesh: setup.get("mesh") * h,
-        horizontal: 0.0,
-        ramp: RAMP * (h / G).sqrt(),
-    }
+    let [b, h, friction_deg] = ["b", "h", "phi_deg"].map(|name| setup.get(name));
+    Block { friction_deg, ..Block::level(setup, [b, h], RAMP) }
 }
 
 /// The horizontal acceleration (in g) from which on the block tips, by bisection.

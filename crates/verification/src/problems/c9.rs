@@ -32,23 +32,9 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn slide(setup: &Setup, water: f64, seismic: f64) -> PlaneSlide {
-    let height = setup.get("height");
-    PlaneSlide {
-        height,
-        crack: setup.get("crack"),
-        face: setup.get("face_deg").to_radians(),
-        plane: setup.get("plane_deg").to_radians(),
-        cohesion: setup.get("cohesion"),
-        friction: setup.get("phi_deg").to_radians(),
-        unit_weight: setup.get("gamma"),
-        water_weight: setup.get("gamma_w"),
-        water,
-        seismic,
-        young: setup.get("young"),
-        size: setup.get("mesh") * height,
-        planes: 1,
-        spacing: height,
-    }
+    let slide = PlaneSlide::of(setup, setup.get("plane_deg"), setup.get("gamma"));
+    let [crack, water_weight, young] = ["crack", "gamma_w", "young"].map(|name| setup.get(name));
+    PlaneSlide { crack, water_weight, water, seismic, young, size: setup.get("mesh") * slide.height, ..slide }
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {

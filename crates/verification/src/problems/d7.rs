@@ -124,14 +124,11 @@ fn shares(setup: &Setup) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Values;
-    use enmm::model::case::Integrator;
 
     /// F = 0.688059 + 15.5572·k, so that k = 2.00512 % holds the block.
     #[test]
     fn jennings_factor_is_that_of_numbers_worked_out_twice() {
-        let setup =
-            Setup { values: Values::of(&PROBLEM), integrator: Integrator::Explicit, quick: true, cases: Vec::new() };
+        let setup = Setup::of(&PROBLEM, true);
         let factor = |k| jennings(&setup, k, [30.0; 2]);
         assert!((factor(0.0) - 0.688059).abs() < 1e-6);
         assert!((factor(1.0) - factor(0.0) - 15.5572).abs() < 1e-4);

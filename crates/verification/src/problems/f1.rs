@@ -1,6 +1,6 @@
 //! F1: limit analysis of a block on an incline.
 
-use super::limit::{Scene, block_on_plane, bound_of, factor_rows};
+use super::limit::{Scene, bound_of, factor_rows};
 use crate::{Outcome, Parameter, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -21,21 +21,8 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
-    let [a, phi, length, height] = ["a_deg", "phi_deg", "length", "height"].map(|name| setup.get(name));
-    let (outline, joint) = block_on_plane(length, height);
-    let scene = Scene {
-        dip_deg: a,
-        outline,
-        joints: vec![(joint, "joint")],
-        laws: vec![("joint", phi, 0.0)],
-        held: vec![[-0.25 * length, -0.5 * height]],
-        unit_weight: setup.get("gamma"),
-        seismic: 0.0,
-        size: 0.45 * height,
-    };
-    if a.to_radians().tan() > length / height {
-        return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
-    }
+    let [a, phi] = ["a_deg", "phi_deg"].map(|name| setup.get(name));
+    let scene = Scene::block(setup, 0.0)?;
     let bound = bound_of(setup, "block_on_incline", scene.text("Limit analysis of a block on an incline"))?;
     let mut rows = factor_rows("", &bound, phi.to_radians().tan() / a.to_radians().tan()).to_vec();
     // At the limit the reduced friction angle is the dip: the block that dilates by it leaves level.

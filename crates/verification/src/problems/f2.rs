@@ -1,6 +1,6 @@
 //! F2: limit analysis of a block held by cohesion.
 
-use super::limit::{Scene, block_on_plane, bound_of, factor_rows};
+use super::limit::{Scene, bound_of, factor_rows};
 use crate::{Outcome, Parameter, Problem, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -23,21 +23,8 @@ pub const PROBLEM: Problem = Problem {
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let [a, phi, cohesion] = ["a_deg", "phi_deg", "cohesion"].map(|name| setup.get(name));
     let [length, height, unit_weight] = ["length", "height", "gamma"].map(|name| setup.get(name));
-    let (outline, joint) = block_on_plane(length, height);
-    let scene = Scene {
-        dip_deg: a,
-        outline,
-        joints: vec![(joint, "joint")],
-        laws: vec![("joint", phi, cohesion)],
-        held: vec![[-0.25 * length, -0.5 * height]],
-        unit_weight,
-        seismic: 0.0,
-        size: 0.45 * height,
-    };
+    let scene = Scene::block(setup, cohesion)?;
     let (s, c) = a.to_radians().sin_cos();
-    if s / c > length / height {
-        return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
-    }
     let weight = unit_weight * length * height;
     let exact = (cohesion * length + weight * c * phi.to_radians().tan()) / (weight * s);
     let bound = bound_of(setup, "block_with_cohesion", scene.text("Limit analysis of a block with cohesion"))?;

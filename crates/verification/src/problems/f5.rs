@@ -1,6 +1,5 @@
 //! F5: limit analysis of a plane slide with water, a seismic coefficient and bolts.
 
-use super::incline::G;
 use super::limit::{bound_of, factor_rows};
 use super::plane_slide::PlaneSlide;
 use crate::{Outcome, Parameter, Problem, Setup, Trouble};
@@ -31,35 +30,8 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn slide(setup: &Setup, water: f64, seismic: f64) -> PlaneSlide {
-    let height = setup.get("height");
-    PlaneSlide {
-        height,
-        crack: setup.get("crack"),
-        face: setup.get("face_deg").to_radians(),
-        plane: setup.get("plane_deg").to_radians(),
-        cohesion: setup.get("cohesion"),
-        friction: setup.get("phi_deg").to_radians(),
-        unit_weight: setup.get("gamma"),
-        water_weight: 1e3 * G,
-        water,
-        seismic,
-        young: 2e10,
-        size: 0.12 * height,
-        planes: 1,
-        spacing: 1.0,
-    }
-}
-
-/// The formula with the tension of all bolts (N/m).
-fn exact(slide: &PlaneSlide, tension: f64, delta: f64) -> f64 {
-    let (s, c) = slide.plane.sin_cos();
-    let uplift = 0.5 * slide.water_weight * slide.water * slide.length();
-    let push = 0.5 * slide.water_weight * slide.water.powi(2);
-    let (weight, k) = (slide.weight(), slide.seismic);
-    let (pull_s, pull_c) = (slide.plane + delta).sin_cos();
-    let normal = weight * (c - k * s) - uplift - push * s + tension * pull_s;
-    let drive = weight * (s + k * c) + push * c - tension * pull_c;
-    (slide.cohesion * slide.length() + normal * slide.friction.tan()) / drive
+    let slide = PlaneSlide::of(setup, setup.get("plane_deg"), setup.get("gamma"));
+    PlaneSlide { crack: setup.get("crack"), water, seismic, ..slide }
 }
 
 /// Bolts from the face through the plane, as the case writes them.
@@ -101,18 +73,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             text = text.replace("[[stage]]", &(bolts(setup, &slide) + "[[stage]]"));
         }
         let bound = bound_of(setup, &format!("plane_slide{}", name.replace([',', ' '], "_")), text)?;
-        outcome.rows.extend(factor_rows(name, &bound, exact(&slide, if bolted { all } else { 0.0 }, delta)));
+        outcome.rows.extend(factor_rows(name, &bound, slide.bolted_factor(if bolted { all } else { 0.0 }, delta)));
     }
     Ok(outcome)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn without_bolts_the_formula_is_that_of_the_wedge() {
-        let slide = slide(&Setup::of(&PROBLEM, true), 5.0, 0.05);
-        assert!((exact(&slide, 0.0, 0.3) / slide.factor() - 1.0).abs() < 1e-14);
-    }
 }

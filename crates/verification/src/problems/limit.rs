@@ -56,6 +56,30 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// A block on a plane with nothing before it, of the parameters that problems share.
+    ///
+    /// # Errors
+    /// A block that topples.
+    pub fn block(setup: &Setup, cohesion: f64) -> Result<Self, Trouble> {
+        let [a, phi, length, height] = ["a_deg", "phi_deg", "length", "height"].map(|name| setup.get(name));
+        if a.to_radians().tan() > length / height {
+            return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
+        }
+        let (outline, joint) = block_on_plane(length, height);
+        Ok(Self {
+            dip_deg: a,
+            outline,
+            joints: vec![(joint, "joint")],
+            laws: vec![("joint", phi, cohesion)],
+            held: vec![[-0.25 * length, -0.5 * height]],
+            unit_weight: setup.get("gamma"),
+            seismic: 0.0,
+            size: 0.45 * height,
+        })
+    }
+}
+
 /// A block on a plane with nothing before it: outline, and the joint below it.
 pub fn block_on_plane(length: f64, height: f64) -> (Line, Line) {
     let outline = vec![
