@@ -176,36 +176,28 @@ fn judge(outcome: &mut Outcome, setup: &Setup, beam: &Beam, load: Load, name: &s
     // the cube otherwise.
     let local = if load == Load::Point { 4e-3 * (10.0 * beam.depth / beam.length).powi(3) } else { 0.0 };
     let last = results.len() - 1;
-    outcome.rows.push(
-        Row::new(format!("{name}: deflection over the supports"), "m", results[last].sag[0], exact[0])
-            .relative(bending + 6e-3 + local, "below 2/rows² of linear covers; the supports' dents"),
-    );
+    let row = Row::new(format!("{name}: deflection over the supports"), "m", results[last].sag[0], exact[0]);
+    outcome.rows.push(row.relative(bending + 6e-3 + local, "below 2/rows² of linear covers; the supports' dents"));
     outcome.rows.push(
         Row::new(format!("{name}: sag between points L/10 inside"), "m", sag(last), exact[1])
             .relative(bending + local, "linear covers bend like constant-strain triangles: below 2/rows²"),
     );
     let limit = sag(last) + (sag(last) - sag(last - 1)) / 3.0;
     let left = 1e-3 + local + 4.0 * (2.1 / (finest * finest)).powi(2);
-    outcome.rows.push(
-        Row::new(format!("{name}: sag, extrapolated"), "m", limit, exact[1])
-            .relative(left.max(2e-3), "Richardson's rule leaves the square of the finest error"),
-    );
+    let row = Row::new(format!("{name}: sag, extrapolated"), "m", limit, exact[1]);
+    outcome.rows.push(row.relative(left.max(2e-3), "Richardson's rule leaves the square of the finest error"));
     let order = ((sag(last - 1) / exact[1] - 1.0) / (sag(last) / exact[1] - 1.0)).log2();
     let width = if load == Load::Point { 0.7 } else { 0.4 };
-    outcome.rows.push(
-        Row::new(format!("{name}: order of the sag in h"), "", order, 2.0)
-            .absolute(width, "h²; the mesh does not fit the beam; a force is a singular load"),
-    );
+    let row = Row::new(format!("{name}: order of the sag in h"), "", order, 2.0);
+    outcome.rows.push(row.absolute(width, "h²; the mesh does not fit the beam; a force is a singular load"));
     if load != Load::Point {
         let softer = (0..results.len()).filter(|k| sag(*k) > exact[1]).count();
         let reason = "covers allow fewer displacements than the rock has, which makes a beam stiffer";
         let row = Row::new(format!("{name}: meshes of 3 that sag by more than the rock"), "", softer as f64, 0.0);
         outcome.rows.push(row.at_most(0.0, reason));
         let order = (results[last - 1].stress / results[last].stress).log2();
-        outcome.rows.push(
-            Row::new(format!("{name}: order of stress in h"), "", order, 1.0)
-                .absolute(0.35, "stress is uniform in an element: error h"),
-        );
+        let row = Row::new(format!("{name}: order of stress in h"), "", order, 1.0);
+        outcome.rows.push(row.absolute(0.35, "stress is uniform in an element: error h"));
     }
 }
 

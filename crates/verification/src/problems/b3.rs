@@ -62,11 +62,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         outcome.rows.extend(rows_of);
         outcome.plots.push(profile(setup, &simulation, &stress));
     }
-    outcome.plots.push(
-        Plot::new("B3: error of the settlement over the mesh size", ["mesh size h [m]", "relative error [-]"])
-            .line("computed", curve)
-            .logarithmic([true; 2]),
-    );
+    let plot = Plot::new("B3: error of the settlement over the mesh size", ["mesh size h [m]", "relative error [-]"]);
+    outcome.plots.push(plot.line("computed", curve).logarithmic([true; 2]));
     Ok(outcome)
 }
 

@@ -85,10 +85,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
                 let peak = Motion::peak(&way);
                 let reason = "the head's kink at its turn is rounded by the mesh: less than 2h/L of twice the rest";
                 let most = Tolerance::Relative(1.0 / count);
-                outcome.rows.push(
-                    Row::new(format!("{name}: greatest displacement of the head"), "m", peak, 2.0 * level)
-                        .within(most, reason),
-                );
+                let row = Row::new(format!("{name}: greatest displacement of the head"), "m", peak, 2.0 * level);
+                outcome.rows.push(row.within(most, reason));
                 outcome.rows.push(Row::ledger(&motion.last));
                 outcome.plots.push(plot(name, &times, &way, level, exact));
             }
@@ -97,9 +95,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             let limit = last + (last - middle);
             let order = ((first - middle) / (middle - last)).abs().log2();
             let reason = "error ∝ 1/n by the give of the base's springs: what two meshes extrapolate to";
-            outcome.rows.push(
-                Row::new(format!("{name}: extrapolated error of the period"), "", limit, 0.0).at_most(5e-4, reason),
-            );
+            let row = Row::new(format!("{name}: extrapolated error of the period"), "", limit, 0.0);
+            outcome.rows.push(row.at_most(5e-4, reason));
             outcome.rows.push(Row::new(format!("{name}: order of convergence"), "", order, 1.0));
         }
     }

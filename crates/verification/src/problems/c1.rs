@@ -252,11 +252,8 @@ fn square(setup: &mut Setup, outcome: &mut Outcome, incline: Incline, t: f64) ->
     outcome.rows.push(way_row(&incline, &slide));
     outcome.rows.push(Row::ledger(&slide.report));
     let exact = points.iter().map(|p| [p[0], 0.5 * incline.acceleration() * p[0] * p[0]]).collect();
-    outcome.plots.push(
-        Plot::new(format!("Slip, a = {}°, φ = {}°", incline.slope, incline.friction), ["t (s)", "slip (m)"])
-            .line("exact", exact)
-            .marks("computed", points),
-    );
+    let plot = Plot::new(format!("Slip, a = {}°, φ = {}°", incline.slope, incline.friction), ["t (s)", "slip (m)"]);
+    outcome.plots.push(plot.line("exact", exact).marks("computed", points));
     Ok(())
 }
 

@@ -162,13 +162,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let factor = reduce(setup, 20.0, 10.0, [low, None])?.factor().unwrap_or(f64::NAN);
         let row = Row::new("factor of safety, mesh size H/20, ten times stiffer", "", factor, exact).from(bishop);
         outcome.rows.push(row.within(TOLERANCE, REASON));
-        outcome.plots.push(
-            Plot::new("Factor of safety over mesh size", ["mesh size over height", "factor of safety"]).beside(
-                "Bishop's simplified method",
-                |_| exact,
-                points,
-            ),
-        );
+        let plot = Plot::new("Factor of safety over mesh size", ["mesh size over height", "factor of safety"]);
+        outcome.plots.push(plot.beside("Bishop's simplified method", |_| exact, points));
     }
     Ok(outcome)
 }

@@ -53,11 +53,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             .at_most(1.0, "below the limit the slope must move on")
             .from(origin),
     ]);
-    outcome.plots.push(
-        Plot::new("Displacement of the block that goes farthest", ["time (s)", "displacement (m)"])
-            .with(series)
-            .logarithmic([false, true]),
-    );
+    let plot = Plot::new("Displacement of the block that goes farthest", ["time (s)", "displacement (m)"]);
+    outcome.plots.push(plot.with(series).logarithmic([false, true]));
     Ok(outcome)
 }
 

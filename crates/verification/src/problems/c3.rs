@@ -150,16 +150,14 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let tolerance = if accelerations[k] > 0.0 { Tolerance::Relative(1e-4) } else { Tolerance::AtMost(1e-4) };
         let reason =
             "second difference of three places, free of the elastic start; the blocks turn a little on the step";
-        rows.push(
-            Row::new(format!("acceleration, {name} block"), "m/s²", found, accelerations[k]).within(tolerance, reason),
-        );
+        let row = Row::new(format!("acceleration, {name} block"), "m/s²", found, accelerations[k]);
+        rows.push(row.within(tolerance, reason));
     }
     if let Some(push) = push {
         let tolerance = if push > 0.0 { Tolerance::Relative(1e-3) } else { Tolerance::AtMost(1e-2) };
         let reason = "mean over two thirds of the time of a force that swings with waves in the blocks";
-        rows.push(
-            Row::new("push between the blocks per unit mass", "m/s²", slide.push, push).within(tolerance, reason),
-        );
+        let row = Row::new("push between the blocks per unit mass", "m/s²", slide.push, push);
+        rows.push(row.within(tolerance, reason));
     }
     rows.push(Row::ledger(&slide.report));
     let [low, high] = slide.curves;

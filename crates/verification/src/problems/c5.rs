@@ -99,11 +99,8 @@ impl Shake {
         outcome.rows.push(Row::ledger(&slide.last));
         let every = (path.len() / 300).max(1);
         let line = path.iter().step_by(every).map(|s| [s.time, s.way]).collect();
-        outcome.plots.push(
-            Plot::new(format!("C5, {name}: slip under {peak} g at {frequency} Hz"), ["time (s)", "slip (m)"])
-                .line("rigid block", line)
-                .marks("computed", slide.points()),
-        );
+        let plot = Plot::new(format!("C5, {name}: slip under {peak} g at {frequency} Hz"), ["time (s)", "slip (m)"]);
+        outcome.plots.push(plot.line("rigid block", line).marks("computed", slide.points()));
         Ok(())
     }
 }

@@ -137,18 +137,11 @@ fn step(joint: &Jointed, setup: &mut Setup, stiffness: f64, outcome: &mut Outcom
     let reason = "2 % asked, of the incident step; the mesh rings a little behind the front";
     for share in [0.5, 1.0, 2.0, 3.0] {
         let time = arrival + 0.5 * rise + share / rate;
-        outcome.rows.push(
-            Row::new(format!("{wave:?}, step: v_t/v0 {share}·z/2k after its middle"), "", at(time), exact(time))
-                .absolute(0.02, reason),
-        );
+        let row = Row::new(format!("{wave:?}, step: v_t/v0 {share}·z/2k after its middle"), "", at(time), exact(time));
+        outcome.rows.push(row.absolute(0.02, reason));
     }
-    outcome.plots.push(
-        Plot::new(format!("D1: {wave:?} velocity step behind one joint"), ["time (s)", "v_t/v0"]).beside(
-            "exact",
-            exact,
-            motion.points(&shares),
-        ),
-    );
+    let plot = Plot::new(format!("D1: {wave:?} velocity step behind one joint"), ["time (s)", "v_t/v0"]);
+    outcome.plots.push(plot.beside("exact", exact, motion.points(&shares)));
     Ok(())
 }
 

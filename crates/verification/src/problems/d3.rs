@@ -111,10 +111,8 @@ fn soften(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
                 grows by 1/200 of the peak's at a time";
     rows.push(Row::new("Mohr–Coulomb: peak shear stress", "Pa", greatest, peak).relative(5e-3, even));
     rows.push(Row::new("its displacement", "m", top.slip, peak / ks).relative(8e-3, even));
-    rows.push(
-        Row::new("residual shear stress", "Pa", end.shear, last)
-            .relative(1e-3, "Coulomb's limit holds at the end of each step; the block is at rest"),
-    );
+    let row = Row::new("residual shear stress", "Pa", end.shear, last);
+    rows.push(row.relative(1e-3, "Coulomb's limit holds at the end of each step; the block is at rest"));
     rows.push(Row::ledger(&report));
     let curve = states.iter().map(|s| [s.slip * 1e3, s.shear / 1e6]).collect();
     let exact = [[0.0, 0.0], [peak / ks, peak], [peak / ks, last], [2.0 * peak / ks, last]];

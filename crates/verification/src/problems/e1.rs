@@ -79,11 +79,8 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome) -> Result<(), Trouble> {
             .from(ORIGIN),
     ]);
     let points = |k: usize| found[k].0.iter().enumerate().map(|(b, u)| [b as f64, u.norm()]).collect();
-    outcome.plots.push(
-        Plot::new("E1: displacement of every block", ["block [-]", "displacement [m]"])
-            .marks("explicit", points(0))
-            .marks("implicit", points(1)),
-    );
+    let plot = Plot::new("E1: displacement of every block", ["block [-]", "displacement [m]"]);
+    outcome.plots.push(plot.marks("explicit", points(0)).marks("implicit", points(1)));
     Ok(())
 }
 

@@ -102,11 +102,8 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome, name: &str, text: String, seco
     ]);
     let ledger = Row::ledger(&report);
     outcome.rows.push(Row { quantity: format!("{name}: {}", ledger.quantity), ..ledger });
-    outcome.plots.push(
-        Plot::new(format!("E2: kinetic energy of the {name}"), ["time [s]", "kinetic energy [J/m]"])
-            .line("computed", energy)
-            .logarithmic([false, true]),
-    );
+    let plot = Plot::new(format!("E2: kinetic energy of the {name}"), ["time [s]", "kinetic energy [J/m]"]);
+    outcome.plots.push(plot.line("computed", energy).logarithmic([false, true]));
     Ok(())
 }
 
