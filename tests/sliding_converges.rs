@@ -103,15 +103,19 @@ fn assert_near(stack: &Stack, tolerance: f64) {
     }
 }
 
+/// The dashpot of contacts once shrank with the step, so that short steps let sliding blocks vibrate: at a quarter of
+/// the default step a block slid 21 times as far as Coulomb friction lets it.
 #[test]
-fn long_a_block_slides_as_far_as_a_rigid_one_on_any_base_and_mesh() {
+fn long_a_block_slides_as_far_as_a_rigid_one_on_any_base_mesh_and_step() {
     let meshes = by_extent([vec![3.0, 1.5], vec![3.0, 1.5], vec![3.0, 1.5, 0.75]]);
     for (base, tolerance) in [(Base::Rigid, 0.02), (Base::Quiet, 0.02), (Base::FixedEdges, 0.03)] {
         for &mesh in &meshes {
             assert_near(&Stack { base, mesh, ..BLOCK }, tolerance);
-            // A quarter of the default step.
-            let dt_max = 2.5e-4 * mesh / 3.0;
-            assert_near(&Stack { base, mesh, dt_max, ..BLOCK }, tolerance);
+            // A half and a quarter of the default step.
+            let shorter: &[f64] = if base == Base::Rigid { &[5e-4, 2.5e-4] } else { &[2.5e-4] };
+            for dt_max in shorter.iter().map(|dt| dt * mesh / 3.0) {
+                assert_near(&Stack { base, mesh, dt_max, ..BLOCK }, tolerance);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@
 pub mod claims;
 pub mod extent;
 pub mod geometry;
+pub mod loose;
 pub mod pit;
 pub mod rest;
 pub mod saved;

@@ -33,12 +33,7 @@ const WEIGHT: f64 = 2600.0 * 9.81;
 fn at_rest() -> Simulation {
     let loaded = enmm_io::parse_case(CASE, "case", "".as_ref()).expect("a case");
     let mut simulation = Simulation::new(loaded.case).expect("a model");
-    for step in 0.. {
-        let report = simulation.advance(step % 50 == 0).expect("a step");
-        if step % 50 == 0 && simulation.stage_is_over(Some(&report)) {
-            break;
-        }
-    }
+    simulation.run_stage().expect("no failure");
     simulation
 }
 

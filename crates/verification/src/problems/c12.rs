@@ -44,18 +44,11 @@ fn tension(weight: f64, slope: f64, friction: f64, delta: f64) -> f64 {
 fn case(setup: &Setup, delta: f64, pretension: f64) -> String {
     let [slope, friction, weight] = ["a_deg", "phi_deg", "weight"].map(|name| setup.get(name));
     let [length, height] = BLOCK;
-    let outline = [
-        [-WALL - 2.0, -1.5],
-        [length + 1.5, -1.5],
-        [length + 1.5, 0.0],
-        [length, 0.0],
-        [length, height],
-        [0.0, height],
-        [0.0, 0.0],
-        [-WALL, 0.0],
-        [-WALL, height + 1.0],
-        [-WALL - 2.0, height + 1.0],
-    ];
+    let [left, right] = [-WALL - 2.0, length + 1.5];
+    let base = [[left, -1.5], [right, -1.5], [right, 0.0]];
+    let block = [[length, 0.0], [length, height], [0.0, height], [0.0, 0.0]];
+    let wall = [[-WALL, 0.0], [-WALL, height + 1.0], [left, height + 1.0]];
+    let outline = [&base[..], &block, &wall].concat();
     let centre = [0.5 * length, 0.5 * height];
     let to_wall = (centre[0] + WALL + 0.6) / delta.cos().max(1e-9);
     let to_base = (centre[1] + 0.6) / delta.sin().max(1e-9);

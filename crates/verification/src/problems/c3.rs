@@ -48,18 +48,10 @@ fn exact(slope: f64, lower: f64, upper: f64) -> ([f64; 2], Option<f64>) {
 fn case(setup: &Setup) -> String {
     let [slope, length] = ["a_deg", "length"].map(|name| setup.get(name));
     let end = 2.0 * length + 0.5 * G * setup.get("t").powi(2) + 1.0;
-    let outline = [
-        [-1.0, -1.2],
-        [end, -1.2],
-        [end, -STEP],
-        [2.0 * length, -STEP],
-        [2.0 * length, 1.0 - STEP],
-        [length, 1.0 - STEP],
-        [length, 1.0],
-        [0.0, 1.0],
-        [0.0, 0.0],
-        [-1.0, 0.0],
-    ];
+    let base = [[-1.0, -1.2], [end, -1.2], [end, -STEP]];
+    let lower = [[2.0 * length, -STEP], [2.0 * length, 1.0 - STEP], [length, 1.0 - STEP]];
+    let upper = [[length, 1.0], [0.0, 1.0], [0.0, 0.0], [-1.0, 0.0]];
+    let outline = [&base[..], &lower, &upper].concat();
     let joint = |a: [f64; 2], b: [f64; 2], law: &str| {
         format!("[[joint]]\npoints = {:?}\nlaw = \"{law}\"\n", turn(&[a, b], -slope))
     };

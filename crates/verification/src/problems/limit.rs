@@ -82,16 +82,9 @@ impl Scene {
 
 /// A block on a plane with nothing before it: outline, and the joint below it.
 pub fn block_on_plane(length: f64, height: f64) -> (Line, Line) {
-    let outline = vec![
-        [-0.5 * length, -height],
-        [2.0 * length, -height],
-        [2.0 * length, 0.0],
-        [length, 0.0],
-        [length, height],
-        [0.0, height],
-        [0.0, 0.0],
-        [-0.5 * length, 0.0],
-    ];
+    let [left, right] = [-0.5 * length, 2.0 * length];
+    let mut outline = vec![[left, -height], [right, -height], [right, 0.0]];
+    outline.extend([[length, 0.0], [length, height], [0.0, height], [0.0, 0.0], [left, 0.0]]);
     (outline, vec![[0.0, 0.0], [length, 0.0]])
 }
 
