@@ -1,7 +1,6 @@
 //! Claim: a step allocates nothing once its buffers have grown, neither under gravity nor in a failure that searches.
 
-use std::path::Path;
-
+use crate::common::{example, simulation};
 use allocation_counter::measure;
 use enmm::model::Simulation;
 
@@ -27,9 +26,7 @@ fn count(simulation: &mut Simulation, warm: usize) -> u64 {
 
 #[test]
 fn long_steps_of_a_failing_slope_allocate_nothing() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
-    let case = enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
-    let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
+    let mut simulation = simulation(&example("fractured_slope"));
     simulation.set_serial(true);
     count(&mut simulation, 400);
     simulation.next_stage().unwrap_or_else(|e| panic!("{e}"));

@@ -2,9 +2,8 @@
 //! checkpoints to the bit, and with a closed ledger.
 
 use crate::common::claims::{advance, assert_ledger, block_at};
-use crate::common::{run_stage, simulation};
+use crate::common::{refusal, run_stage, simulation};
 use enmm::model::Simulation;
-use enmm::model::case::Case;
 
 const G: f64 = 9.81;
 const AREA: f64 = 2.0 * 0.8;
@@ -13,11 +12,10 @@ const DENSITY: f64 = 2500.0;
 /// A block of 2 m × 0.8 m that hangs below a held slab, from which a smooth joint parts it, and bolts.
 fn roof(bolts: &str, stages: &str) -> String {
     format!(
-        "title = \"roof\"\n[domain]\noutline = [[-1, 0], [3, 0], [3, 1], [-1, 1]]\nislands = [[[0, -0.8], [2, -0.8], \
-        [2, \
-         0], [0, 0]]]\n[mesh]\nsize = 0.5\norigin = [0.031, 0.017]\n[joint_law.joint]\nfriction_deg = \
-         0.0\n[rock.rock]\n\
-         density = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n[[fix]]\nblock = [-0.5, 0.5]\n{bolts}{stages}"
+        "title = \"roof\"\n[domain]\noutline = [[-1, 0], [3, 0], [3, 1], [-1, 1]]\n\
+         islands = [[[0, -0.8], [2, -0.8], [2, 0], [0, 0]]]\n[mesh]\nsize = 0.5\norigin = [0.031, 0.017]\n\
+         [joint_law.joint]\nfriction_deg = 0.0\n[rock.rock]\ndensity = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n\
+         [[fix]]\nblock = [-0.5, 0.5]\n{bolts}{stages}"
     )
 }
 
@@ -144,17 +142,6 @@ fn a_saved_state_goes_on_with_the_same_bits() {
     assert_eq!(sim.state(), other.state());
 }
 
-fn refused(bolts: &str, stages: &str) -> String {
-    let text = roof(bolts, stages);
-    match enmm_io::parse_case(&text, "c.toml", std::path::Path::new(".")) {
-        Err(error) => error.to_string(),
-        Ok(loaded) => {
-            let case: Case = loaded.case;
-            Simulation::new(case).map(|_| ()).expect_err("it is refused").to_string()
-        }
-    }
-}
-
 #[test]
 fn bolts_that_cannot_be_are_errors() {
     let named = |more: &str| bolt(1.0, 2e11, more);
@@ -169,7 +156,7 @@ fn bolts_that_cannot_be_are_errors() {
         (named("free_length = 0.1"), SETTLE.into(), "bolt[0].free_length"),
         (named("name = \"a\"\nactive = false"), install("a") + "excavate = [[1.0, -0.4]]\n", "has been removed"),
     ] {
-        let message = refused(&bolts, &stages);
+        let message = refusal(&roof(&bolts, &stages));
         assert!(message.contains(words), "{message}");
     }
 }

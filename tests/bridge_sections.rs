@@ -5,7 +5,7 @@ use enmm::model::assemble::Breaking;
 use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{Simulation, State};
 
-use crate::common::{run_stage, simulation};
+use crate::common::{run_stage, simulation, step_to};
 
 /// Weight (N/m) of the overhang, and the moment (N) at its root.
 const WEIGHT: f64 = 2.0 * 2600.0 * 9.81;
@@ -25,13 +25,6 @@ fn overhang(size: f64, angle: f64, tension: f64, stage: &str) -> String {
 
 const AT_REST: &str = "kind = \"static\"\nduration = 0.6";
 const AT_ONCE: &str = "kind = \"dynamic\"\nduration = 0.05\ndamping = 0";
-
-/// Moves on until `seconds` have passed.
-fn advance(simulation: &mut Simulation, seconds: f64) {
-    while simulation.time() < seconds {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
-}
 
 /// The weight hangs on the section, whatever the mesh: its forces are those of equilibrium within the unbalanced ratio
 /// of a stage at rest (1e-4), and its moment within the angle by which the overhang sags.
@@ -53,7 +46,7 @@ fn gravity_at_once_breaks_a_bridge_of_less_than_twice_the_stress_at_rest() {
     for (size, angle) in [(1.0, 0.0), (0.5, 30.0)] {
         let broken = [0.95, 1.03].map(|share| {
             let mut simulation = simulation(&overhang(size, angle, 2.0 * share * FIBRE, AT_ONCE));
-            advance(&mut simulation, 0.03);
+            step_to(&mut simulation, 0.03);
             simulation.state().counters.broken
         });
         assert!((broken[0] - 1.0).abs() < 1e-9 && broken[1] == 0.0, "h {size}: {broken:?} m broken");
@@ -66,7 +59,7 @@ fn node_by_node_a_coarse_mesh_holds_what_no_section_holds() {
     let holds = |breaks: &str| {
         let text = overhang(1.0, 0.0, 0.5 * FIBRE, AT_REST).replace("cohesion = 20e6", breaks);
         let mut simulation = simulation(&text.replace("breaks", "cohesion = 20e6\nbreaks"));
-        advance(&mut simulation, 0.6);
+        step_to(&mut simulation, 0.6);
         simulation.state().counters.broken == 0.0
     };
     assert!(holds("breaks = \"by node\"") && !holds("breaks = \"by section\""));

@@ -9,37 +9,19 @@ use enmm_io::checkpoint::{CheckpointError, load, save};
 /// A jointed slope whose covers are enough to be shared between threads (more than 2048), falling apart.
 const SLOPE: &str = r#"
 title = "slope"
-[domain]
-outline = [[0, 0], [20, 0], [20, 12], [10, 12], [4, 2], [0, 2]]
-joint_law = "joint"
-[mesh]
-size = 0.3
-angle_deg = 7
-[[joint_set]]
-angle_deg = 40
-spacing = 1.7
-[[joint_set]]
-angle_deg = 115
-spacing = 2.1
-[rock.any]
-density = 2600
-young = 1e8
-poisson = 0.25
-[joint_law.joint]
-friction_deg = 10
-dilation_deg = 3
-cohesion = 100
-[[fix]]
-name = "bottom"
-edge = [[0, 0], [20, 0]]
-[[stage]]
-name = "settle"
-kind = "static"
-duration = 0.02
-[[stage]]
-name = "fall"
-kind = "dynamic"
-duration = 1
+domain = { outline = [[0, 0], [20, 0], [20, 12], [10, 12], [4, 2], [0, 2]], joint_law = "joint" }
+mesh = { size = 0.3, angle_deg = 7 }
+joint_set = [
+    { angle_deg = 40, spacing = 1.7 },
+    { angle_deg = 115, spacing = 2.1 },
+]
+rock.any = { density = 2600, young = 1e8, poisson = 0.25 }
+joint_law.joint = { friction_deg = 10, dilation_deg = 3, cohesion = 100 }
+fix = [{ name = "bottom", edge = [[0, 0], [20, 0]] }]
+stage = [
+    { name = "settle", kind = "static", duration = 0.02 },
+    { name = "fall", kind = "dynamic", duration = 1 },
+]
 "#;
 
 fn advance(simulation: &mut Simulation, steps: usize) {

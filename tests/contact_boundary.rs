@@ -3,7 +3,7 @@
 use enmm::model::tables::{Boundary, DetectionRule};
 use enmm::model::{Simulation, assemble::outlines};
 
-use crate::common::root;
+use crate::common::{case, example};
 
 /// Half or twice any of them: on example cases the same boundary points end sides, and as many are nodes. They are the
 /// same ones, but `node_snap` moves those between corners by as much as it says.
@@ -17,8 +17,7 @@ fn no_angle_decides_what_a_corner_is() {
         ("node_snap", |rule| &mut rule.node_snap),
     ];
     for name in ["block_on_incline", "goodman_bray", "masonry_wall", "plane_slide", "road_cut", "toppling"] {
-        let path = root().join("examples/cases").join(name).with_extension("toml");
-        let case = enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
+        let case = case(&example(name));
         let outlines = outlines(&case).unwrap_or_else(|e| panic!("{e}"));
         let simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
         let covers = &simulation.model().covers;

@@ -1,28 +1,16 @@
 //! The vertex rule at corners: nothing catches where nothing is in the way, and nothing passes through.
 
 use crate::common::claims::{advance, block_at, motion};
+use crate::common::loose::{FLAT, G, SIZE, loose_blocks, thrown};
 use crate::common::parts::{dynamic, rock};
-use crate::common::{run_stage, simulation};
+use crate::common::run_stage;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::model::overlap::deepest_overlap;
 
-const SIZE: f64 = 1.0;
-const G: f64 = 9.81;
-
-/// Loose blocks (`islands`) over a held base, with further text.
+/// Loose blocks (`islands`) over a held base, with further text; E = 1 GPa.
 fn case(base: &str, islands: &str, seconds: f64, more: &str) -> Simulation {
-    simulation(&format!(
-        "title = \"corners\"\n[domain]\noutline = {base}\nislands = {islands}\n[mesh]\nsize = {SIZE}\n\
-         origin = [0.137, 0.071]\n[joint_law.joint]\nfriction_deg = 20.0\n[[fix]]\nblock = [0.1, -0.9]\n{more}{}{}",
-        rock(1e9, 2500.0),
-        dynamic("fall", seconds, 0.1)
-    ))
-}
-
-/// An initial velocity of the block at a point.
-fn thrown(point: [f64; 2], velocity: [f64; 2]) -> String {
-    format!("[[initial_velocity]]\nblock = {point:?}\nvelocity = {velocity:?}\n")
+    loose_blocks(base, islands, 20.0, &format!("{more}{}{}", rock(1e9, 2500.0), dynamic("fall", seconds, 0.1)))
 }
 
 /// Advances to the end of the stage; returns the deepest overlap (m) seen by the audit.
@@ -38,8 +26,6 @@ fn run(simulation: &mut Simulation) -> f64 {
     println!("overlap {worst:e} m, counters {:?}", simulation.state().counters);
     worst
 }
-
-const FLAT: &str = "[[0.0, -1.0], [12.0, -1.0], [12.0, 0.0], [0.0, 0.0]]";
 
 /// A block slides off an edge with 6 m/s, tips and falls past the wall below: after it has left, it falls freely.
 #[test]
@@ -129,9 +115,8 @@ fn notch_and_slot_hold_a_square() {
 /// A sharp wedge drops between two loose blocks: it drives them apart and stays between them.
 #[test]
 fn a_thin_wedge_drives_two_blocks_apart() {
-    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], \
-                   [[5.02, 0.001], [6.02, 0.001], [6.02, 2.0], [5.02, 2.0]], \
-                   [[5.01, 1.99], [5.16, 3.5], [4.86, 3.5]]]";
+    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], [[5.02, 0.001], [6.02, 0.001], [6.02, 2.0], \
+                   [5.02, 2.0]], [[5.01, 1.99], [5.16, 3.5], [4.86, 3.5]]]";
     let mut simulation = case(FLAT, islands, 2.0, &thrown([5.01, 3.0], [0.0, -3.0]));
     let worst = run(&mut simulation);
     let [left, right, wedge] = [[4.5, 1.0], [5.5, 1.0], [5.01, 3.0]].map(|p| motion(&simulation, p).0);

@@ -1,33 +1,15 @@
 //! A slope that fails: no block goes into another, by an audit of polygons that knows nothing of contacts.
 
+use crate::common::loose::{SIZE, small_slope};
 use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation};
 use enmm::model::overlap::Audit;
-
-const SIZE: f64 = 1.0;
-
-/// A slope of 15 m in some 100 blocks; at rest under strong joints, then without much friction.
-fn slope() -> String {
-    format!(
-        "title = \"small slope\"\n[domain]\noutline = [[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], \
-         [24.0, 20.0], [14.0, 5.0], \
-         [0.0, 5.0]]\n[mesh]\nsize = {SIZE}\nangle_deg = 7.0\n[[joint]]\npoints = [[12.0, 4.0], [39.0, 21.0]]\n\
-         [[joint_set]]\nangle_deg = 36.0\ndip_sd_deg = 1.5\nspacing = 1.5\nspacing_sd = 0.3\nseed = 11\n\
-         region = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n[[joint_set]]\nangle_deg = 118.0\ndip_sd_deg = 3.0\n\
-         spacing = 1.5\nspacing_sd = 0.3\nseed = 12\nregion = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n\
-         [joint_law.joint]\nfriction_deg = 45.0\n[[fix]]\nedge = [[0.0, 0.0], [40.0, 0.0]]\n{}\
-         [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 6.0\n{}\
-         [[stage.law]]\nlaw = \"joint\"\nfriction_deg = 15.0\n",
-        rock(5e9, 2650.0),
-        dynamic("failure", 1.5, 0.1)
-    )
-}
 
 /// Impacts press blocks together and corners that meet tip on tip sink in by a few hundredths of the mesh size before
 /// they part: the limit of the whole run is 0.05, which a node that passes a side unseen exceeds at once.
 #[test]
 fn a_failing_slope_overlaps_by_little() {
-    let mut simulation = simulation(&slope());
+    let mut simulation = simulation(&small_slope([36.0, 118.0], [1.5; 2], [11, 12], 45.0));
     let report = run_stage(&mut simulation);
     assert!(simulation.at_rest(&report), "the slope must settle: {report:?}");
     assert!(simulation.next_stage().expect("a stage"));

@@ -15,59 +15,24 @@ const ROUND_OFF: f64 = 1e-13;
 /// rests, then loses its strength and fails.
 const SLOPE: &str = r#"
 title = "a slope on joints"
-[domain]
-outline = [[0, 0], [60, 0], [60, 40], [34, 40], [16, 10], [0, 10]]
-joint_law = "joint"
-[mesh]
-size = 5.0
-angle_deg = 7.0
-[[joint]]
-points = [[15, 8], [62, 37]]
-law = "master"
-[[joint_set]]
-angle_deg = 33.0
-spacing = 6.1
-spacing_sd = 0.5
-seed = 11
-region = [[15, 9], [33, 41], [58, 41]]
-[[joint_set]]
-angle_deg = 118.0
-spacing = 6.3
-spacing_sd = 0.6
-seed = 12
-region = [[15, 9], [33, 41], [58, 41]]
-[rock.gneiss]
-density = 2650
-young = 5e9
-poisson = 0.25
-[joint_law.joint]
-friction_deg = 45
-cohesion = 2e4
-tension = 1e4
-[joint_law.master]
-kind = "barton_bandis"
-friction_deg = 28.0
-jrc = 10.0
-jcs = 60e6
-[[fix]]
-edge = [[0, 0], [60, 0]]
-[[stage]]
-name = "gravity"
-kind = "static"
-duration = 8.0
-[[stage]]
-name = "failure"
-kind = "dynamic"
-duration = 3.0
-damping = 0.1
-[[stage.law]]
-law = "joint"
-friction_deg = 8
-cohesion = 0
-tension = 0
-[[stage.law]]
-law = "master"
-friction_deg = 8
+domain = { outline = [[0, 0], [60, 0], [60, 40], [34, 40], [16, 10], [0, 10]], joint_law = "joint" }
+mesh = { size = 5.0, angle_deg = 7.0 }
+joint = [{ points = [[15, 8], [62, 37]], law = "master" }]
+joint_set = [
+    { angle_deg = 33.0, spacing = 6.1, spacing_sd = 0.5, seed = 11, region = [[15, 9], [33, 41], [58, 41]] },
+    { angle_deg = 118.0, spacing = 6.3, spacing_sd = 0.6, seed = 12, region = [[15, 9], [33, 41], [58, 41]] },
+]
+rock.gneiss = { density = 2650, young = 5e9, poisson = 0.25 }
+joint_law.joint = { friction_deg = 45, cohesion = 2e4, tension = 1e4 }
+joint_law.master = { kind = "barton_bandis", friction_deg = 28.0, jrc = 10.0, jcs = 60e6 }
+fix = [{ edge = [[0, 0], [60, 0]] }]
+stage = [
+    { name = "gravity", kind = "static", duration = 8.0 },
+    { name = "failure", kind = "dynamic", duration = 3.0, damping = 0.1, law = [
+        { law = "joint", friction_deg = 8, cohesion = 0, tension = 0 },
+        { law = "master", friction_deg = 8 },
+    ] },
+]
 "#;
 
 /// Solves the contacts of the next step in both ways; returns how many are open, slip and lock.
@@ -132,16 +97,15 @@ fn compare(simulation: &Simulation) -> [usize; 3] {
 /// The slope with a rock bridge, which breaks by section, as the upper half of its master joint.
 fn bridged() -> String {
     let half = "points = [[15, 8], [38.5, 22.5]]";
-    let bridge = "[[bridge]]\npoints = [[38.5, 22.5], [62, 37]]\nlaw = \"rock\"\n[[joint_set]]";
-    let law = "[joint_law.rock]\nfriction_deg = 45\ncohesion = 2e5\nresidual_cohesion = 0\ntension = 1e5\n\
-               breaks = \"by section\"\n[joint_law.master]";
-    let text = SLOPE.replace("points = [[15, 8], [62, 37]]", half).replacen("[[joint_set]]", bridge, 1);
-    text.replace("[joint_law.master]", law)
+    let bridge = "bridge = [{ points = [[38.5, 22.5], [62, 37]], law = \"rock\" }]\n";
+    let law = "joint_law.rock = { friction_deg = 45, cohesion = 2e5, residual_cohesion = 0, tension = 1e5, \
+               breaks = \"by section\" }\n";
+    SLOPE.replace("points = [[15, 8], [62, 37]]", half).replace("stage = [", &[bridge, law, "stage = ["].concat())
 }
 
 #[test]
 fn the_solver_of_steps_agrees_with_the_method_written_out() {
-    let dilates = SLOPE.replace("friction_deg = 45", "friction_deg = 45\ndilation_deg = 15\ndilation_slip = 1.0");
+    let dilates = SLOPE.replace("friction_deg = 45", "friction_deg = 45, dilation_deg = 15, dilation_slip = 1.0");
     for (law, text) in [("plain", SLOPE), ("dilates", &dilates), ("with a bridge", &bridged())] {
         let mut slope = simulation(text);
         assert_eq!(slope.model().sections.list.is_empty(), law != "with a bridge");

@@ -295,11 +295,7 @@ mesh.size = 0.5
 gravity.y = 0.0
 rock.r = { density = 1000, young = 1e8, poisson = 0.2 }
 solver.communication_step = 0.01
-[[stage]]
-name = "fly"
-kind = "dynamic"
-duration = 1.0
-damping = 0.0
+stage = [{ name = "fly", kind = "dynamic", duration = 1.0, damping = 0.0 }]
 "#;
     parse_case(text, "free.toml", Path::new("")).unwrap().cosimulation().unwrap()
 }

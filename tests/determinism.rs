@@ -1,7 +1,7 @@
 //! Runs are the same to the bit on one and on two threads, and when run again.
 
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step};
 use enmm::model::State;
 
 /// 300 bricks on a held slab under a gravity that leans: contacts open, slip and lock, and the blocks fill several
@@ -32,9 +32,7 @@ fn run(threads: usize, bond: &str) -> State {
         let mut simulation = simulation(&heap(bond));
         let covers = &simulation.model().covers;
         assert!(covers.block_count() > 100 && covers.cover_count() > 4096, "{} blocks", covers.block_count());
-        for _ in 0..400 {
-            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        }
+        step(&mut simulation, 400);
         simulation.state().clone()
     })
 }

@@ -3,29 +3,16 @@
 
 use crate::common::claims::motion;
 use crate::common::extent::by_extent;
+use crate::common::loose::{FLAT, G, SIZE, loose_blocks, small_slope, square, thrown};
 use crate::common::parts::{dynamic, rock};
 use crate::common::{run_stage, simulation, varied_rules};
 use enmm::model::Simulation;
 use enmm::model::overlap::Audit;
 use enmm::model::tables::DetectionRule;
 
-const SIZE: f64 = 1.0;
-const G: f64 = 9.81;
-const FLAT: &str = "[[0.0, -1.0], [12.0, -1.0], [12.0, 0.0], [0.0, 0.0]]";
-
 /// Loose blocks over a held base, with further text; E = 10 GPa.
 fn case(base: &str, islands: &str, friction_deg: f64, seconds: f64, more: &str) -> Simulation {
-    simulation(&format!(
-        "title = \"fast\"\n[domain]\noutline = {base}\nislands = {islands}\n[mesh]\nsize = {SIZE}\n\
-         origin = [0.137, 0.071]\n[joint_law.joint]\nfriction_deg = {friction_deg:?}\n[[fix]]\nblock = [0.1, -0.9]\n\
-         {more}{}{}",
-        rock(1e10, 2500.0),
-        dynamic("fast", seconds, 0.1)
-    ))
-}
-
-fn thrown(point: [f64; 2], velocity: [f64; 2]) -> String {
-    format!("[[initial_velocity]]\nblock = {point:?}\nvelocity = {velocity:?}\n")
+    loose_blocks(base, islands, friction_deg, &format!("{more}{}{}", rock(1e10, 2500.0), dynamic("fast", seconds, 0.1)))
 }
 
 /// Result of the audit of a run.
@@ -73,9 +60,7 @@ fn watch(simulation: &mut Simulation, every: u64) -> Worst {
 /// velocity along the base, closed as the crack's mouth is.
 #[test]
 fn a_tilted_block_slides_over_a_crack_mouth() {
-    let (sin, cos) = 20.0f64.to_radians().sin_cos();
-    let corner = |x: f64, y: f64| [3.0 + x * cos - y * sin, 0.001 + x * sin + y * cos];
-    let block = format!("[{:?}]", [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+    let block = format!("[{:?}]", square([3.0, 0.001], 20.0));
     for crack in ["[[4.0, 0.0], [4.0, -0.6]]", "[[4.0, 0.0], [3.7, -0.6]]", "[[4.0, 0.0], [4.4, -0.6]]"] {
         for speed in [4.0, 6.0, 12.0] {
             let more = format!("[[joint]]\npoints = {crack}\n{}", thrown([3.5, 0.5], [speed, -1.0]));
@@ -126,12 +111,10 @@ fn a_wedge_is_driven_into_a_narrow_mouth() {
 /// A block strikes a floor with its corner at 30 m/s: what has entered is pushed out by where it entered.
 #[test]
 fn a_corner_strikes_a_floor() {
-    for tilt_deg in [3.0f64, 20.0, 44.0] {
-        let (sin, cos) = tilt_deg.to_radians().sin_cos();
-        let corner = |x: f64, y: f64| [5.0 + x * cos - y * sin, 0.01 + x * sin + y * cos];
-        let block = format!("[{:?}]", [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
-        let inside = corner(0.5, 0.5);
-        let mut simulation = case(FLAT, &block, 20.0, 0.05, &thrown(inside, [5.0, -30.0]));
+    for tilt_deg in [3.0, 20.0, 44.0] {
+        let corners = square([5.0, 0.01], tilt_deg);
+        let inside = [0, 1].map(|k| 0.5 * (corners[0][k] + corners[2][k]));
+        let mut simulation = case(FLAT, &format!("[{corners:?}]"), 20.0, 0.05, &thrown(inside, [5.0, -30.0]));
         let worst = audit(&mut simulation, 1);
         assert!(worst.overlap < 0.01 * SIZE, "{tilt_deg}°: {worst:?}");
         assert_eq!(simulation.state().counters.deep_contacts, 0);
@@ -141,9 +124,8 @@ fn a_corner_strikes_a_floor() {
 /// Half or twice any constant of contact: corners and wedges that come in fast stay outside.
 #[test]
 fn no_constant_decides_who_enters() {
-    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], \
-                   [[5.002, 0.001], [6.002, 0.001], [6.002, 2.0], [5.002, 2.0]], \
-                   [[5.0014, 2.005], [5.201, 3.5], [4.801, 3.5]]]";
+    let islands = "[[[4.0, 0.001], [5.0, 0.001], [5.0, 2.0], [4.0, 2.0]], [[5.002, 0.001], [6.002, 0.001], [6.002, \
+                   2.0], [5.002, 2.0]], [[5.0014, 2.005], [5.201, 3.5], [4.801, 3.5]]]";
     for (name, rule) in varied_rules() {
         let more = thrown([5.001, 3.0], [0.0, -10.0]);
         let mut simulation = case(FLAT, islands, 20.0, 0.05, &more).with_detection(rule);
@@ -157,27 +139,7 @@ fn no_constant_decides_who_enters() {
 fn slope(seed: u64) -> String {
     let dips = [34.5 + (seed % 4) as f64 - 1.5, 112.0 + 2.0 * (seed % 3) as f64];
     let spacings = [1.2 + 0.05 * (seed % 5) as f64, 1.1 + 0.07 * (seed % 4) as f64];
-    let set = |k: usize| {
-        format!(
-            "[[joint_set]]\nangle_deg = {}\ndip_sd_deg = {}\nspacing = {}\nspacing_sd = 0.3\nseed = {}\n\
-             region = [[13.0, 4.0], [24.0, 20.5], [38.0, 20.5]]\n",
-            dips[k],
-            [1.5, 3.0][k],
-            spacings[k],
-            100 * (k as u64 + 1) + seed
-        )
-    };
-    format!(
-        "title = \"slope {seed}\"\n[domain]\noutline = [[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [24.0, 20.0], \
-         [14.0, 5.0], [0.0, 5.0]]\n[mesh]\nsize = {SIZE}\nangle_deg = 7.0\n[[joint]]\npoints = [[12.0, 4.0], \
-         [39.0, 21.0]]\n{}{}[joint_law.joint]\nfriction_deg = 50.0\n{}[[fix]]\nedge = [[0.0, 0.0], [40.0, 0.0]]\n\
-         [[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration = 6.0\n{}[[stage.law]]\nlaw = \"joint\"\n\
-         friction_deg = 15\n",
-        set(0),
-        set(1),
-        rock(5e9, 2650.0),
-        dynamic("failure", 1.5, 0.1)
-    )
+    small_slope(dips, spacings, [100 + seed, 200 + seed], 50.0)
 }
 
 /// Slopes in which faces bend into each other between nodes: expected to overlap without a spring, by 0.16 to 0.36 % of

@@ -4,20 +4,13 @@
 use enmm::internals::contact::VertexEdge;
 use enmm::model::Simulation;
 
-use crate::common::{root, without_found};
+use crate::common::{example, simulation, step, without_found};
 
 /// A slope in which some blocks slide and others rest, after as many steps of its last stage.
 fn slope(steps: u64) -> Simulation {
-    let loaded = enmm_io::load_case(&root().join("examples/cases/toppling.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let mut simulation = Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"));
-    advance(&mut simulation, steps);
+    let mut simulation = simulation(&example("toppling"));
+    step(&mut simulation, steps);
     simulation
-}
-
-fn advance(simulation: &mut Simulation, steps: u64) {
-    for _ in 0..steps {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
 }
 
 /// Contacts of the next step, and those that it would have if it found all of them.
@@ -56,9 +49,9 @@ fn contacts_that_stay_are_those_that_a_step_would_find() {
 fn steps_do_not_depend_on_when_a_state_was_saved() {
     let mut simulation = slope(203);
     let saved = simulation.state().clone();
-    advance(&mut simulation, 9);
+    step(&mut simulation, 9);
     let mut other = slope(0);
     other.restore(saved);
-    advance(&mut other, 9);
+    step(&mut other, 9);
     assert!(simulation.state() == other.state());
 }

@@ -1,17 +1,14 @@
 //! Claim: the fractured slope of the README rests, then fails, without energy from nowhere or blocks in each other.
 
-use std::path::Path;
-
 use crate::common::extent::by_extent;
-use crate::common::run_stage;
+use crate::common::{case, example, run_stage};
 use enmm::model::overlap::Audit;
 use enmm::model::tables::DetectionRule;
 use enmm::model::{Case, Simulation};
 
 /// The case of the README.
 fn fractured_slope() -> Case {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
-    enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case
+    case(&example("fractured_slope"))
 }
 
 /// Changes of Young's modulus, relative to it, that send the failing slope along another path. With the last three two

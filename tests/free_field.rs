@@ -1,7 +1,7 @@
 //! Claim: a plane wave that enters a wide model between free-field columns stays plane and is that of a column of rock.
 
 use crate::common::parts::dynamic;
-use crate::common::simulation;
+use crate::common::{simulation, step_to};
 use enmm::model::Simulation;
 
 const WIDTH: f64 = 120.0;
@@ -101,9 +101,7 @@ fn columns_stand_on_a_moving_base() {
     let mut simulation = block(&both("free_field"), &base, 5.0, 0.0);
     let rest = push * DENSITY * HEIGHT * HEIGHT / (2.0 * SHEAR);
     let half = 2.0 * HEIGHT / 1000.0;
-    while simulation.time() < half {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
+    step_to(&mut simulation, half);
     for k in 5..10 {
         let way = -simulation.monitor(k).0.x / (2.0 * rest);
         println!("{way}");

@@ -15,51 +15,32 @@ fn block_on_base(dip_deg: f64, friction_deg: f64, more: &str) -> Cosimulation {
     let turn = |[x, y]: [f64; 2]| format!("[{:.15}, {:.15}]", c * x - s * y, s * x + c * y);
     let outline = [[-3.0, -1.0], [9.0, -1.0], [9.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0], [0.0, 0.0], [-3.0, 0.0]];
     let outline = outline.map(turn).join(", ");
+    let [left_foot, right_foot] = [[0.0, 0.0], [2.0, 0.0]].map(turn);
+    let [left_head, right_head] = [[0.0, 1.0], [2.0, 1.0]].map(turn);
     let text = format!(
         r#"
 title = "Block on a base"
 domain.outline = [{outline}]
-mesh.size = 0.8
-mesh.origin = [0.03, 0.01]
-joint = [{{ points = [{}, {}] }}]
+mesh = {{ size = 0.8, origin = [0.03, 0.01] }}
+joint = [{{ points = [{left_foot}, {right_foot}] }}]
 joint_law.joint.friction_deg = {friction_deg}
 rock.r = {{ density = 2000, young = 50e9, poisson = 0.2 }}
 fix = [{{ block = {} }}]
 solver.communication_step = 0.01
+port = [
+    {{ name = "block", block = {} }},
+    {{ name = "left", boundary = [{left_foot}, {left_head}] }},
+    {{ name = "top", boundary = [{left_head}, {right_head}] }},
+    {{ name = "joint", joint = [{left_foot}, {right_foot}] }},
+]
+stage = [
+    {{ name = "settle", kind = "static", duration = 5.0, convergence = 1e-7 }},
+    {{ name = "move", kind = "dynamic", duration = 2.0, damping = 0.1 }},
+]
 {more}
-[[port]]
-name = "block"
-block = {}
-[[port]]
-name = "left"
-boundary = [{}, {}]
-[[port]]
-name = "top"
-boundary = [{}, {}]
-[[port]]
-name = "joint"
-joint = [{}, {}]
-[[stage]]
-name = "settle"
-kind = "static"
-duration = 5.0
-convergence = 1e-7
-[[stage]]
-name = "move"
-kind = "dynamic"
-duration = 2.0
-damping = 0.1
 "#,
-        turn([0.0, 0.0]),
-        turn([2.0, 0.0]),
         turn([5.0, -0.5]),
         turn([1.0, 0.5]),
-        turn([0.0, 0.0]),
-        turn([0.0, 1.0]),
-        turn([0.0, 1.0]),
-        turn([2.0, 1.0]),
-        turn([0.0, 0.0]),
-        turn([2.0, 0.0]),
     );
     let loaded = parse_case(&text, "block.toml", Path::new("")).unwrap_or_else(|e| panic!("{e}"));
     let mut model = loaded.cosimulation().unwrap_or_else(|e| panic!("{e}"));

@@ -9,12 +9,11 @@ fn case(stress: [f64; 3]) -> String {
     let fixes: String = edges.iter().map(|e| format!("[[fix]]\nedge = {e}\n")).collect();
     format!(
         "title = \"in situ\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 4], [0, 4]]\n[mesh]\nsize = 0.7\nangle_deg = 9\n\
-         [[joint]]\npoints = [[-1, 1.3], [5, 2.1]]\n[[joint]]\npoints = [[1.7, -1], [2.2, 5]]\n\
-         [rock.rock]\ndensity = 2600\nyoung = 1e9\npoisson = 0.25\n[joint_law.joint]\nfriction_deg = 35\n\
-         [gravity]\ny = 0\n[in_situ]\nsxx = {sxx:e}\nsyy = {syy:e}\nsxy = {sxy:e}\n{fixes}\
-         [[stage]]\nname = \"before\"\nkind = \"dynamic\"\nduration = 0.05\n\
-         [[stage]]\nname = \"excavation\"\nkind = \"static\"\nduration = 1.0\nexcavate = [[3.5, 3.5]]\n\
-         [[monitor]]\nname = \"wall\"\npoint = [1.9, 3.0]\n"
+         [[joint]]\npoints = [[-1, 1.3], [5, 2.1]]\n[[joint]]\npoints = [[1.7, -1], [2.2, 5]]\n[rock.rock]\n\
+         density = 2600\nyoung = 1e9\npoisson = 0.25\n[joint_law.joint]\nfriction_deg = 35\n[gravity]\ny = 0\n\
+         [in_situ]\nsxx = {sxx:e}\nsyy = {syy:e}\nsxy = {sxy:e}\n{fixes}[[stage]]\nname = \"before\"\n\
+         kind = \"dynamic\"\nduration = 0.05\n[[stage]]\nname = \"excavation\"\nkind = \"static\"\nduration = 1.0\n\
+         excavate = [[3.5, 3.5]]\n[[monitor]]\nname = \"wall\"\npoint = [1.9, 3.0]\n"
     )
 }
 

@@ -1,7 +1,7 @@
 //! A block pressed its corner on the mouth of a crack of a millimetre, whose tip then lay behind the block's face. The
 //! tip held that face while the block slid away, in a slope until it was 9 cm behind the face and pressed with 25 MN/m.
 
-use crate::common::simulation;
+use crate::common::{simulation, step_to};
 
 /// Largest penetration (m) while a tilted square of 2 m slides to the left on its lower corner at 4 m/s, pressed by
 /// gravity (m/s²) on a floor with a crack that is parallel to its left face. The crack is half a millimetre deep, since
@@ -25,9 +25,7 @@ fn penetration(tilt_deg: f64, gravity: f64) -> f64 {
     ));
     let boundary = &simulation.model().boundary;
     assert!(boundary.partial.contains(&true), "no crack");
-    while simulation.time() < 0.15 {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
+    step_to(&mut simulation, 0.15);
     simulation.state().counters.penetration_max
 }
 

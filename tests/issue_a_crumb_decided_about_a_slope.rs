@@ -1,10 +1,8 @@
 //! A chip of a few square centimetres kept static stages from rest for ever and turned the verdicts of trials.
 
-use std::path::Path;
-
+use crate::common::simulation;
 use enmm::geometry::Point;
 use enmm::model::Simulation;
-use enmm_io::parse_case;
 
 use crate::common::pit::PIT;
 
@@ -17,8 +15,7 @@ fn built(joints: &[[[f64; 2]; 2]], more: &str) -> Simulation {
          {joints}[rock.granite]\ndensity = 2650\nyoung = 50e9\npoisson = 0.25\n[joint_law.j]\nfriction_deg = 30\n\
          [[fix]]\nedge = [[0, 0], [10, 0]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 2\n"
     );
-    let loaded = parse_case(&text, "case.toml", Path::new("")).expect("reads");
-    Simulation::new(loaded.case).expect("builds")
+    simulation(&text)
 }
 
 /// Three joints that cross in a triangle with legs of 4 cm, 8 cm² large.
@@ -94,8 +91,7 @@ fn a_crumb_that_falls_is_named_and_holds_up_no_stage() {
 /// all of 20 s.
 #[test]
 fn a_crumb_that_shakes_its_neighbours_holds_up_no_stage() {
-    let loaded = parse_case(PIT, "case.toml", Path::new("")).expect("reads");
-    let mut simulation = Simulation::new(loaded.case).expect("builds");
+    let mut simulation = simulation(PIT);
     let covers = &simulation.model().covers;
     let crumb = covers.blocks().find(|&b| (covers.block_area(b) - 0.241).abs() < 1e-3).expect("the crumb");
     let own = covers.covers_of(crumb);

@@ -1,43 +1,27 @@
 //! A report on a state costs a step. It is worked out once for every state, and again whenever the state, its inputs or
 //! its stage have changed: nothing that is kept is ever old.
 
-use std::path::Path;
-
+use crate::common::simulation;
 use allocation_counter::measure;
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
-use enmm_io::parse_case;
 
 const CASE: &str = r#"
 title = "two blocks"
-[domain]
-outline = [[0, 0], [4, 0], [4, 2], [0, 2]]
-[mesh]
-size = 0.1
-origin = [0.031, 0.017]
-[rock.rock]
-density = 2500
-young = 1e8
-poisson = 0.25
-[joint_law.joint]
-friction_deg = 30
-[[joint]]
-points = [[-1, 1.3], [5, 0.7]]
-[[fix]]
-edge = [[0, 0], [4, 0]]
-[[stage]]
-name = "rest"
-kind = "static"
-duration = 1.0
-[[stage]]
-name = "free"
-kind = "dynamic"
-duration = 1.0
+domain.outline = [[0, 0], [4, 0], [4, 2], [0, 2]]
+mesh = { size = 0.1, origin = [0.031, 0.017] }
+rock.rock = { density = 2500, young = 1e8, poisson = 0.25 }
+joint_law.joint.friction_deg = 30
+joint = [{ points = [[-1, 1.3], [5, 0.7]] }]
+fix = [{ edge = [[0, 0], [4, 0]] }]
+stage = [
+    { name = "rest", kind = "static", duration = 1.0 },
+    { name = "free", kind = "dynamic", duration = 1.0 },
+]
 "#;
 
 fn built() -> Simulation {
-    let loaded = parse_case(CASE, "two.toml", Path::new(".")).unwrap_or_else(|error| panic!("{error}"));
-    Simulation::new(loaded.case).unwrap_or_else(|invalid| panic!("{}: {}", invalid.key, invalid.message))
+    simulation(CASE)
 }
 
 /// The report now is that of a copy without cached values.

@@ -1,13 +1,11 @@
 //! Two blocks passed into each other by a sixth of the mesh size without force, and nothing told of it: penetration is
 //! that of contacts, and the pair had none. The audit compares polygons, and the overlap is an event.
 
-use std::path::Path;
-
+use crate::common::simulation;
 use enmm::geometry::Vector;
 use enmm::model::overlap::EVERY;
 use enmm::model::tables::DetectionRule;
 use enmm::model::{Event, EventKind, Simulation};
-use enmm_io::parse_case;
 
 /// Two squares of 2 m side by side, 1 cm apart.
 fn squares() -> Simulation {
@@ -15,8 +13,7 @@ fn squares() -> Simulation {
                 islands = [[[2.01, 0], [4.01, 0], [4.01, 2], [2.01, 2]]]\n[mesh]\nsize = 1.0\n\
                 [rock.granite]\ndensity = 2650\nyoung = 50e9\npoisson = 0.25\n[joint_law.j]\nfriction_deg = 30\n\
                 [[fix]]\nedge = [[0, 0], [2, 0]]\n[[stage]]\nname = \"fall\"\nkind = \"dynamic\"\nduration = 1\n";
-    let loaded = parse_case(text, "case.toml", Path::new("")).expect("reads");
-    Simulation::new(loaded.case).expect("builds")
+    simulation(text)
 }
 
 /// Overlaps (m) that the audit of the next step finds, with the right square put so deep (m) into the left one, and

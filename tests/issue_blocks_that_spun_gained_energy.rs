@@ -3,7 +3,7 @@
 //! outside of the rock.
 
 use crate::common::claims::{assert_ledger, block_at};
-use crate::common::simulation;
+use crate::common::{simulation, step_to};
 use enmm::geometry::{Point, Vector};
 use enmm::model::{Simulation, StepReport};
 
@@ -80,9 +80,7 @@ fn a_spinning_bar_is_stretched_by_its_own_mass() {
              [[monitor]]\nname = \"left\"\npoint = [0.0, 0.2]\n[[monitor]]\nname = \"right\"\npoint = [4.0, 0.2]\n\
              [[stage]]\nname = \"fly\"\nkind = \"dynamic\"\nduration = 10\ndamping = 0.3\n"
         ));
-        while simulation.time() < 1.0 {
-            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        }
+        step_to(&mut simulation, 1.0);
         let [left, right] = [0, 1].map(|end| simulation.monitor(end).0);
         let strain = (right - left + Vector::new(length, 0.0)).norm() / length - 1.0;
         let expected = density * spin * spin * length * length / (12.0 * young);

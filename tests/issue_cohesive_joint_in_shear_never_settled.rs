@@ -2,7 +2,7 @@
 //! measured against the normal force alone.
 
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step};
 
 /// Two blocks, one held, joined by cohesion, one pulled along the joint: no step is halved or left unsettled, and a
 /// step takes few sweeps.
@@ -19,9 +19,7 @@ fn shear_without_normal_force_settles() {
         dynamic("pull", 0.05, 0.1)
     ));
     let steps = simulation.steps_in(0.05);
-    for _ in 0..steps {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
+    step(&mut simulation, steps);
     let counters = simulation.state().counters;
     println!("{counters:?}");
     assert_eq!([counters.halved, counters.unsettled], [0, 0]);

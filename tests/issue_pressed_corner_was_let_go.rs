@@ -16,37 +16,17 @@ const TOPS: [f64; 2] = [2.0, 2.004];
 /// A block that a pressure holds against the face of a held one until friction is gone, 4 mm higher than that.
 const PRESSED: &str = r#"
 title = "pressed corner"
-[domain]
-outline = [[0, -1], [1, -1], [1, 0], [2, 0], [2, 2.004], [1, 2.004], [1, 2], [0, 2]]
-[mesh]
-size = 0.5
-[[joint]]
-points = [[1, 0], [1, 2]]
-[rock.soft]
-density = 2000
-young = 1e8
-poisson = 0.2
-[joint_law.joint]
-friction_deg = 60
-[[fix]]
-edge = [[0, -1], [0, 2]]
-[[load]]
-name = "press"
-kind = "pressure"
-edge = [[2, 0], [2, 2.004]]
-pressure = 7e5
-[[stage]]
-name = "hang"
-kind = "static"
-duration = 20.0
-[[stage]]
-name = "slide"
-kind = "dynamic"
-duration = 0.1
-damping = 0.3
-[[stage.law]]
-law = "joint"
-friction_deg = 0
+domain.outline = [[0, -1], [1, -1], [1, 0], [2, 0], [2, 2.004], [1, 2.004], [1, 2], [0, 2]]
+mesh.size = 0.5
+joint = [{ points = [[1, 0], [1, 2]] }]
+rock.soft = { density = 2000, young = 1e8, poisson = 0.2 }
+joint_law.joint.friction_deg = 60
+fix = [{ edge = [[0, -1], [0, 2]] }]
+load = [{ name = "press", kind = "pressure", edge = [[2, 0], [2, 2.004]], pressure = 7e5 }]
+stage = [
+    { name = "hang", kind = "static", duration = 20.0 },
+    { name = "slide", kind = "dynamic", duration = 0.1, damping = 0.3, law = [{ law = "joint", friction_deg = 0 }] },
+]
 "#;
 
 /// Boundary point at a place of the block that has another one at `of`.

@@ -1,7 +1,7 @@
 //! Claim: a joint that dilates lifts its block by slip times tan ψ, whatever its stiffness and the mesh (Eq. 21).
 
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step_to};
 
 const SLOPE: f64 = 35.0;
 const FRICTION: f64 = 20.0;
@@ -23,9 +23,7 @@ fn gained(mesh: f64, stiffness: f64, dilation_deg: f64) -> [f64; 2] {
     ));
     let block = simulation.block_states().iter().position(|block| !block.fixed).expect("a free block");
     let velocity = [0.5, 1.0].map(|until| {
-        while simulation.time() < until {
-            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        }
+        step_to(&mut simulation, until);
         (simulation.time(), simulation.block_states()[block].velocity)
     });
     let [(start, before), (end, after)] = velocity;

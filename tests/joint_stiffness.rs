@@ -13,12 +13,11 @@ fn column(size: f64) -> String {
     let joints: String = (1..BLOCKS).map(|y| format!("[[joint]]\npoints = [[0, {y}], [1, {y}]]\n")).collect();
     format!(
         "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, {BLOCKS}], [0, {BLOCKS}]]\n[mesh]\n\
-         size = {size}\nangle_deg = 8\norigin = [0.0137, 0.0071]\n{joints}\
-         [rock.rock]\ndensity = {DENSITY}\nyoung = {YOUNG:e}\npoisson = {POISSON}\n\
-         [joint_law.joint]\nfriction_deg = 35\n\
-         [[fix]]\nedge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0.0]\naxes = \"x\"\n\
-         [[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n\
-         [[monitor]]\nname = \"top\"\npoint = [0.5, {BLOCKS}]\n"
+         size = {size}\nangle_deg = 8\norigin = [0.0137, 0.0071]\n{joints}[rock.rock]\ndensity = {DENSITY}\n\
+         young = {YOUNG:e}\npoisson = {POISSON}\n[joint_law.joint]\nfriction_deg = 35\n[[fix]]\n\
+         edge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0.0]\naxes = \"x\"\n[[stage]]\n\
+         name = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n[[monitor]]\nname = \"top\"\n\
+         point = [0.5, {BLOCKS}]\n"
     )
 }
 

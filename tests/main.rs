@@ -46,7 +46,6 @@ mod issue_dense_lines_took_minutes_to_refuse;
 mod issue_implausible_values_were_silent;
 mod issue_no_joint_law_panicked;
 mod issue_pressed_corner_was_let_go;
-mod issue_short_steps_let_blocks_slide_on;
 mod issue_states_that_cannot_be_panicked;
 mod issue_touching_islands_were_welded;
 mod issue_unbalanced_ratio_was_infinite;

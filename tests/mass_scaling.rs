@@ -1,20 +1,17 @@
 //! Claim: a static stage with lighter free blocks reaches the same state of rest in fewer steps, its ledger closes, and
 //! the stage after it has the masses of the rock.
 
-use std::path::Path;
-
 use crate::common::claims::assert_ledger;
-use crate::common::run_stage;
+use crate::common::{run_stage, simulation};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm::model::tables::BlockId;
-use enmm_io::parse_case;
 
 const WALL: &str = include_str!("../examples/cases/masonry_wall.toml");
 
 fn settled(scaling: f64) -> Simulation {
     let text = format!("{WALL}\n[solver]\nmass_scaling = {scaling:.1}\n");
-    let mut simulation = Simulation::new(parse_case(&text, "wall", Path::new("")).unwrap().case).unwrap();
+    let mut simulation = simulation(&text);
     let report = run_stage(&mut simulation);
     assert!(simulation.at_rest(&report), "{scaling}");
     assert_ledger(&report);

@@ -1,7 +1,6 @@
 //! The search finds the near pairs that all nodes against all edges give, on any number of threads.
 
-use std::path::Path;
-
+use crate::common::{example, simulation};
 use enmm::geometry::{Vector, segment};
 use enmm::internals::contact::{Frames, NeighbourList, SearchGrid, SearchView, SideId};
 use enmm::model::Simulation;
@@ -52,9 +51,7 @@ fn push(simulation: &Simulation, share: f64) -> Frames {
 
 #[test]
 fn the_search_finds_what_all_against_all_find() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cases/fractured_slope.toml");
-    let case = enmm_io::load_case(&path).unwrap_or_else(|e| panic!("{e}")).case;
-    let mut simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
+    let mut simulation = simulation(&example("fractured_slope"));
     simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
     let boundary = &simulation.model().boundary;
     assert!(boundary.partial.contains(&true), "there must be partial cuts");

@@ -83,12 +83,11 @@ impl Model {
         let [gx, gy] = lie.vector([0.0, -9.81]);
         let angle_deg = lie.turn_deg + if lie.mirrored { -self.angle_deg } else { self.angle_deg };
         format!(
-            "title = \"lies {}\"\n[domain]\noutline = {}\n[mesh]\nsize = {}\nangle_deg = {angle_deg:?}\n\
-             origin = {:?}\n{joints}\
-             [rock.rock]\ndensity = 2600\nyoung = 5e9\npoisson = 0.25\n[joint_law.joint]\n{}\n\
-             [gravity]\nx = {gx:?}\ny = {gy:?}\n[solver]\ncontact_tolerance = {tolerance:e}\n[[fix]]\nedge = {}\n\
-             [[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nramp = 1.0\n\
-             convergence = {convergence:e}\n{monitors}",
+            "title = \"lies {}\"\n[domain]\noutline = {}\n[mesh]\nsize = {}\nangle_deg = {angle_deg:?}\norigin = {:?}\n\
+             {joints}[rock.rock]\ndensity = 2600\nyoung = 5e9\npoisson = 0.25\n[joint_law.joint]\n{}\n[gravity]\n\
+             x = {gx:?}\ny = {gy:?}\n[solver]\ncontact_tolerance = {tolerance:e}\n[[fix]]\nedge = {}\n[[stage]]\n\
+             name = \"settle\"\nkind = \"static\"\nduration = 20.0\nramp = 1.0\nconvergence = {convergence:e}\n\
+             {monitors}",
             lie.name,
             list(&outline),
             self.size,

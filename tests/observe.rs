@@ -1,37 +1,9 @@
 //! Claim: block states show the motion, stress and contact forces that the state holds.
 
+use crate::common::rest::{FLIGHT, rest};
 use crate::common::{run_all, simulation};
 use enmm::geometry::Vector;
 use enmm::model::ContactState;
-
-/// A block of 1 m × 1 m on a held base of 6 m × 1 m.
-fn rest(stage: &str, more: &str) -> String {
-    format!(
-        r#"
-title = "rest"
-[domain]
-outline = [[0, 0], [6, 0], [6, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]]
-joint_law = "plane"
-[mesh]
-size = 0.3
-origin = [0.07, 0.03]
-[[joint]]
-points = [[1, 1], [2, 1]]
-[rock.granite]
-density = 2600
-young = 1e9
-poisson = 0.25
-[joint_law.plane]
-friction_deg = 20
-[[fix]]
-block = [3, 0.5]
-{more}
-[[stage]]
-name = "one"
-{stage}
-"#
-    )
-}
 
 #[test]
 fn a_resting_block_bears_its_weight_by_stress_and_contact() {
@@ -60,15 +32,7 @@ fn a_resting_block_bears_its_weight_by_stress_and_contact() {
 
 #[test]
 fn a_free_block_turns_and_moves_as_its_state_says() {
-    let flight = r#"
-[[initial_velocity]]
-block = [1.5, 1.5]
-velocity = [0.5, 2.0]
-angular_velocity = 1.5
-[gravity]
-y = 0
-"#;
-    let mut simulation = simulation(&rest("kind = \"dynamic\"\nduration = 0.8\ndamping = 0", flight));
+    let mut simulation = simulation(&rest("kind = \"dynamic\"\nduration = 0.8\ndamping = 0", FLIGHT));
     run_all(&mut simulation);
     let (time, blocks) = (simulation.time(), simulation.block_states());
     let block = blocks.iter().find(|block| !block.fixed).expect("a free block");

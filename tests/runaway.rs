@@ -3,7 +3,7 @@
 
 use crate::common::claims::block_at;
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step};
 use enmm::internals::step::Failure;
 use enmm::model::Simulation;
 
@@ -34,9 +34,7 @@ fn a_grain_spins_freely() {
     let mut simulation = case(grain, &format!("block = [2.01, 3.01]\nangular_velocity = {spin}"));
     let fastest = simulation.state().velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
     assert!(fastest > wave_speed(), "some cover outruns the waves: {fastest} m/s");
-    for _ in 0..50 {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
+    step(&mut simulation, 50);
     let now = simulation.motion_of(block_at(&simulation, [2.01, 3.01])).angular_velocity;
     assert!((now / spin - 1.0).abs() < 0.01, "{now} of {spin} rad/s");
 }

@@ -5,7 +5,7 @@ use enmm::geometry::Vector;
 
 use crate::common::extent::by_extent;
 use crate::common::parts::{dynamic, rock};
-use crate::common::simulation;
+use crate::common::{simulation, step};
 
 const SLOPE: f64 = 35.0;
 const FRICTION: f64 = 40.0;
@@ -63,10 +63,9 @@ impl Stack {
         format!(
             "title = \"slide\"\n[gravity]\nx = {along}\ny = {down}\n[domain]\njoint_law = \"plane\"\n\
              outline = [[0, 0], [{end}, 0], [{end}, {depth}], [{right}, {depth}], [{right}, {top}], [{left}, {top}], \
-             [{left}, {depth}], [0, {depth}]]\n\
-             [mesh]\nsize = {mesh}\nangle_deg = 7.0\norigin = [0.13, 0.29]\n\
-             {joints}[joint_law.plane]\nfriction_deg = {FRICTION}\n{below}[solver]\ndt_max = {dt_max:e}\n{delay}\
-             [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n{}{}",
+             [{left}, {depth}], [0, {depth}]]\n[mesh]\nsize = {mesh}\nangle_deg = 7.0\norigin = [0.13, 0.29]\n\
+             {joints}[joint_law.plane]\nfriction_deg = {FRICTION}\n{below}[solver]\ndt_max = {dt_max:e}\n\
+             {delay}[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-6\n{}{}",
             rock(5e9, 2600.0),
             dynamic("slide", 100.0, 0.05)
         )
@@ -87,9 +86,8 @@ impl Stack {
             state.velocity[covers].iter_mut().for_each(|v| v.x += 1.0);
         }
         simulation.restore(state);
-        for _ in 0..simulation.steps_in(1.5) {
-            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        }
+        let steps = simulation.steps_in(1.5);
+        step(&mut simulation, steps);
         let [slope, friction] = [SLOPE, FRICTION].map(f64::to_radians);
         let exact = 0.5 / (GRAVITY * (slope.cos() * friction.tan() - slope.sin()));
         let end = simulation.block_states();
@@ -105,15 +103,19 @@ fn assert_near(stack: &Stack, tolerance: f64) {
     }
 }
 
+/// The dashpot of contacts once shrank with the step, so that short steps let sliding blocks vibrate: at a quarter of
+/// the default step a block slid 21 times as far as Coulomb friction lets it.
 #[test]
-fn long_a_block_slides_as_far_as_a_rigid_one_on_any_base_and_mesh() {
+fn long_a_block_slides_as_far_as_a_rigid_one_on_any_base_mesh_and_step() {
     let meshes = by_extent([vec![3.0, 1.5], vec![3.0, 1.5], vec![3.0, 1.5, 0.75]]);
     for (base, tolerance) in [(Base::Rigid, 0.02), (Base::Quiet, 0.02), (Base::FixedEdges, 0.03)] {
         for &mesh in &meshes {
             assert_near(&Stack { base, mesh, ..BLOCK }, tolerance);
-            // A quarter of the default step.
-            let dt_max = 2.5e-4 * mesh / 3.0;
-            assert_near(&Stack { base, mesh, dt_max, ..BLOCK }, tolerance);
+            // A half and a quarter of the default step.
+            let shorter: &[f64] = if base == Base::Rigid { &[5e-4, 2.5e-4] } else { &[2.5e-4] };
+            for dt_max in shorter.iter().map(|dt| dt * mesh / 3.0) {
+                assert_near(&Stack { base, mesh, dt_max, ..BLOCK }, tolerance);
+            }
         }
     }
 }

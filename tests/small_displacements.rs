@@ -10,36 +10,17 @@ use enmm::model::Simulation;
 /// A block of 3 m by 2 m on a plane under 30° (gravity is turned, not the plane), and a wall 20 mm before it.
 const BLOCK: &str = r#"
 title = "block before a wall"
-[domain]
-outline = [[-2, -2], [8, -2], [8, 0.5], [3.02, 0.5], [3.02, 0], [3, 0], [3, 2], [0, 2], [0, 0], [-2, 0]]
-[mesh]
-size = 0.9
-origin = [0.031, 0.017]
-[gravity]
-x = 4.905
-y = -8.495709211125344
-[[joint]]
-points = [[0, 0], [3, 0]]
-[rock.rock]
-density = 2500
-young = 5e9
-poisson = 0.25
-[joint_law.joint]
-friction_deg = 40
-[[fix]]
-block = [-1, -1]
-[[stage]]
-name = "settle"
-kind = "static"
-duration = 5
-[[stage]]
-name = "slide"
-kind = "dynamic"
-duration = 2
-damping = 0.1
-[[stage.law]]
-law = "joint"
-friction_deg = 20
+domain.outline = [[-2, -2], [8, -2], [8, 0.5], [3.02, 0.5], [3.02, 0], [3, 0], [3, 2], [0, 2], [0, 0], [-2, 0]]
+mesh = { size = 0.9, origin = [0.031, 0.017] }
+gravity = { x = 4.905, y = -8.495709211125344 }
+joint = [{ points = [[0, 0], [3, 0]] }]
+rock.rock = { density = 2500, young = 5e9, poisson = 0.25 }
+joint_law.joint.friction_deg = 40
+fix = [{ block = [-1, -1] }]
+stage = [
+    { name = "settle", kind = "static", duration = 5 },
+    { name = "slide", kind = "dynamic", duration = 2, damping = 0.1, law = [{ law = "joint", friction_deg = 20 }] },
+]
 "#;
 
 /// The block as it begins to slide.

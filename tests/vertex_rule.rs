@@ -7,7 +7,7 @@ use enmm::internals::contact::{ContactCandidate, VertexRule, prefiltered};
 use enmm::model::Simulation;
 
 use crate::common::extent::by_extent;
-use crate::common::{root, without_found};
+use crate::common::{root, step, without_found};
 
 /// Near sides of a step, how many of them the lanes leave, and how many contacts there are.
 type Counts = [usize; 3];
@@ -104,8 +104,6 @@ fn corners_that_meet_are_decided_by_the_rule_alone() {
     );
     while !simulation.stage_is_over(None) {
         compare(&simulation, "tips");
-        for _ in 0..5 {
-            simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-        }
+        step(&mut simulation, 5);
     }
 }

@@ -7,14 +7,11 @@ use enmm::model::{Simulation, State};
 /// A spinning block that strikes a slab and is crushed at its corner.
 fn text(strength: &str, fix: &str) -> String {
     format!(
-        "title = \"crash\"\n[domain]\noutline = [[-3, -1], [5, -1], [5, 0], [-3, 0]]\nislands = [[[0.1, 0.11], \
-         [1.9, 0.51], \
-         [1.6, 2.2], [-0.3, 1.9]]]\n[mesh]\nsize = 0.12\nangle_deg = 7\n[gravity]\ny = 0\n[rock.rock]\ndensity = \
-         2500\n\
-         young = 1e9\npoisson = 0.25\n{strength}\n[joint_law.joint]\nfriction_deg = 30\n{fix}\n\
-         [[initial_velocity]]\nblock = [1, 1]\nvelocity = [0.5, -6]\nangular_velocity = 1\n[[stage]]\nname = \
-         \"fly\"\n\
-         kind = \"dynamic\"\nduration = 10\ndamping = 0.05\n"
+        "title = \"crash\"\n[domain]\noutline = [[-3, -1], [5, -1], [5, 0], [-3, 0]]\n\
+         islands = [[[0.1, 0.11], [1.9, 0.51], [1.6, 2.2], [-0.3, 1.9]]]\n[mesh]\nsize = 0.12\nangle_deg = 7\n\
+         [gravity]\ny = 0\n[rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.25\n{strength}\n[joint_law.joint]\n\
+         friction_deg = 30\n{fix}\n[[initial_velocity]]\nblock = [1, 1]\nvelocity = [0.5, -6]\nangular_velocity = 1\n\
+         [[stage]]\nname = \"fly\"\nkind = \"dynamic\"\nduration = 10\ndamping = 0.05\n"
     )
 }
 
@@ -113,12 +110,9 @@ fn keeps_momentum(strength: &str) {
 #[test]
 fn the_strength_factor_reduces_rock() {
     let text = "title = \"column\"\n[domain]\noutline = [[0, 0], [1, 0], [1, 4], [0, 4]]\n[mesh]\nsize = 0.5\n\
-                angle_deg = 0\n\
-         [rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.2\nfriction_deg = 30\ncohesion = 5e4\n\
-         dilation_deg = 30\n[[fix]]\n\
-         edge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\npoint = [0.5, 0]\naxes = \"x\"\n[[stage]]\nname = \
-         \"stand\"\n\
-         kind = \"static\"\nduration = 5\n";
+                angle_deg = 0\n[rock.rock]\ndensity = 2500\nyoung = 1e9\npoisson = 0.2\nfriction_deg = 30\n\
+                cohesion = 5e4\ndilation_deg = 30\n[[fix]]\nedge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[fix]]\n\
+                point = [0.5, 0]\naxes = \"x\"\n[[stage]]\nname = \"stand\"\nkind = \"static\"\nduration = 5\n";
     let strength = |f: f64| {
         let phi = (30f64.to_radians().tan() * f).atan();
         2.0 * 5e4 * f * phi.cos() / (1.0 - phi.sin())

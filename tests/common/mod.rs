@@ -4,7 +4,9 @@
 pub mod claims;
 pub mod extent;
 pub mod geometry;
+pub mod loose;
 pub mod pit;
+pub mod rest;
 pub mod saved;
 pub mod shared;
 
@@ -13,10 +15,10 @@ pub mod parts;
 #[path = "../../crates/verification/src/random.rs"]
 pub mod random;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use enmm::model::tables::DetectionRule;
-use enmm::model::{Simulation, StepReport};
+use enmm::model::{Case, Simulation, StepReport};
 
 /// Root of the repository, from the tests of any crate.
 pub fn root() -> &'static Path {
@@ -24,10 +26,45 @@ pub fn root() -> &'static Path {
     folders.into_iter().find(|folder| folder.join("Cargo.lock").is_file()).expect("a crate of the repository")
 }
 
+/// Folder of the example cases.
+pub fn examples() -> PathBuf {
+    root().join("examples/cases")
+}
+
+/// The text of an example case.
+pub fn example(name: &str) -> String {
+    let path = examples().join(name).with_extension("toml");
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// The case of a text; files that it names lie beside the examples.
+pub fn case(text: &str) -> Case {
+    enmm_io::parse_case(text, "case.toml", &examples()).unwrap_or_else(|e| panic!("{e}\n{text}")).case
+}
+
 /// Builds a simulation from the text of a case.
 pub fn simulation(text: &str) -> Simulation {
-    let loaded = enmm_io::parse_case(text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
-    Simulation::new(loaded.case).unwrap_or_else(|e| panic!("{e}"))
+    Simulation::new(case(text)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The error of a case that cannot be read or built.
+pub fn refusal(text: &str) -> String {
+    match enmm_io::parse_case(text, "case.toml", &examples()) {
+        Ok(loaded) => Simulation::new(loaded.case).map(|_| ()).expect_err("it is refused").to_string(),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Takes so many steps, without a report.
+pub fn step(simulation: &mut Simulation, steps: u64) {
+    (0..steps).for_each(|_| _ = simulation.advance(false).unwrap_or_else(|e| panic!("{e}")));
+}
+
+/// Takes steps up to a time (s), without a report.
+pub fn step_to(simulation: &mut Simulation, time: f64) {
+    while simulation.time() < time {
+        step(simulation, 1);
+    }
 }
 
 /// Runs the stage in progress to its end; returns the last report.

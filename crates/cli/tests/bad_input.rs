@@ -11,7 +11,7 @@ fn refuse(case: &str, parts: &[&str]) {
     place.enmm(&["check", "case.toml"]).assert_bad_input(parts);
     let answer = place.enmm(&["check", "case.toml", "--json"]);
     assert_eq!(answer.status, Some(2));
-    let object: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    let object = answer.json();
     assert!(object["error"].as_str().expect("a message").contains(parts[0]), "{object}");
     assert_eq!(place.names(), ["case.toml"]);
 }
@@ -50,7 +50,7 @@ fn a_file_that_cannot_be_read_says_so() {
 #[test]
 fn a_checkpoint_of_another_case_or_none_is_refused_before_anything_is_written() {
     let place = Place::with(&case(0.02));
-    assert_eq!(place.enmm(&["run", "case.toml", "--quiet", "-o", "first"]).status, Some(0));
+    place.answers(0, &["run", "case.toml", "--quiet", "-o", "first"]);
     fs::write(place.path("other.toml"), case(0.03)).expect("written");
     let resume = |case: &str, file: &str| place.enmm(&["run", case, "-o", "second", "--resume", file]);
     resume("other.toml", "first/checkpoint.enmm").assert_bad_input(&["first/checkpoint.enmm: ", "of case "]);
@@ -73,7 +73,7 @@ fn a_directory_that_cannot_be_made_is_bad_input() {
 fn wrong_arguments_exit_with_2() {
     let place = Place::with(&case(0.02));
     for arguments in [&["run"][..], &["run", "case.toml", "--threads", "0"], &["fly"], &["check"]] {
-        assert_eq!(place.enmm(arguments).status, Some(2), "{arguments:?}");
+        place.answers(2, arguments);
     }
     assert_eq!(place.names(), ["case.toml"]);
 }

@@ -4,13 +4,12 @@
 use std::fs;
 
 use crate::extent::by_extent;
-use crate::support::{Place, incline, json};
+use crate::support::{Place, ROAD_CUT, incline, json};
 
 #[test]
 fn stages_that_are_left_out_are_told_once() {
     let place = Place::with(&incline(0.65, "[[stage]]\nname = \"quake\"\nkind = \"dynamic\"\nduration = 0.1\n"));
-    let answer = place.enmm(&["fos", "case.toml", "--tolerance", "0.1"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["fos", "case.toml", "--tolerance", "0.1"]);
     let told = format!("{}{}", answer.stderr, answer.stdout);
     assert_eq!(told.matches("are left out: quake").count(), 1, "{answer:?}");
     let found = json(&place.path("case/fos/fos.json"));
@@ -24,8 +23,7 @@ fn run_fos_and_bound_of_one_case_leave_a_page_each() {
     let read = |page: &str| fs::read(place.path(page)).expect("a page");
     let mut first = Vec::new();
     for (command, page) in ["run", "fos", "bound"].into_iter().zip(pages) {
-        let answer = place.enmm(&[command, "case.toml"]);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let answer = place.answers(0, &[command, "case.toml"]);
         assert!(answer.stdout.contains(page), "{answer:?}");
         first.push(read(page));
     }
@@ -40,7 +38,7 @@ fn a_search_for_tables_alone_removes_the_drawings_of_the_search_before() {
     let place = Place::with(&incline(0.65, ""));
     let search = ["fos", "case.toml", "-o", "out", "--tolerance", "0.1"];
     let left = |words: &[&str]| {
-        assert_eq!(place.enmm(words).status, Some(0));
+        place.answers(0, words);
         place.names_in("out")
     };
     assert_eq!(
@@ -54,8 +52,7 @@ fn a_search_for_tables_alone_removes_the_drawings_of_the_search_before() {
 #[test]
 fn a_block_on_an_incline_has_the_factor_of_its_tangents() {
     let place = Place::with(&incline(0.65, ""));
-    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--tolerance", "0.01"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["fos", "case.toml", "-o", "out", "--tolerance", "0.01"]);
     assert!(answer.stdout.contains("factor of safety") && answer.stdout.contains("verdict"), "{answer:?}");
     for name in ["fos.json", "fos.csv", "fos.png", "failure.png"] {
         assert!(fs::metadata(place.path("out").join(name)).is_ok_and(|file| file.len() > 0), "{name}");
@@ -81,9 +78,7 @@ fn threads_change_nothing_and_json_is_the_file() {
     let mut texts = Vec::new();
     for threads in ["1", "2"] {
         let arguments = ["fos", "case.toml", "--json", "-o", threads, "--threads", threads, "--tolerance", "0.02"];
-        let answer = place.enmm(&arguments);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
-        let printed: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+        let printed = place.answers(0, &arguments).json();
         assert_eq!(printed, json(&place.path(threads).join("fos.json")));
         texts.push(fs::read_to_string(place.path(threads).join("fos.csv")).expect("a table"));
         assert!((printed["factor_of_safety"].as_f64().expect("a factor") / 0.8 - 1.0).abs() < 0.015, "{printed}");
@@ -98,8 +93,7 @@ fn threads_change_nothing_and_json_is_the_file() {
 #[test]
 fn a_slope_that_cannot_fail_in_range_has_at_least_its_end() {
     let place = Place::with(&incline(0.65, ""));
-    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--low", "0.9", "--high", "1.1"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["fos", "case.toml", "-o", "out", "--low", "0.9", "--high", "1.1"]);
     assert!(answer.stdout.contains("at least 1.1") && answer.stdout.contains("--high"), "{answer:?}");
     let found = json(&place.path("out/fos.json"));
     assert_eq!((&found["status"], found["at_least"].as_f64()), (&"stable_throughout".into(), Some(1.1)));
@@ -140,7 +134,7 @@ fn an_interrupt_exits_with_130_and_keeps_the_trials() {
 #[test]
 fn bolts_are_an_active_or_a_passive_support_as_the_case_says() {
     let place = Place::with("");
-    assert_eq!(place.enmm(&["new", "slope", "-o", "slope.toml"]).status, Some(0));
+    place.answers(0, &["new", "slope", "-o", "slope.toml"]);
     let (weight, length) = (94.605 * 2.650 * 9.81, (15f64 * 15.0 + 12.586 * 12.586).sqrt());
     let (dip, fall, friction) = (12.586f64.atan2(15.0), 10f64.to_radians(), 32f64.to_radians().tan());
     for (support, tension, share) in [("active", 150.0, 0.4), ("passive", 375.0, 1.0)] {
@@ -153,9 +147,7 @@ fn bolts_are_an_active_or_a_passive_support_as_the_case_says() {
         let range = ["--low", &low, "--high", &high, "--tolerance", "0.1"];
         for (command, range) in [("fos", &range[..]), ("bound", &[])] {
             let asked = [command, "slope.toml", "--set", "mesh.size=3", "--set", &set, "--json"];
-            let answer = place.enmm(&[&asked[..], range].concat());
-            assert_eq!(answer.status, Some(0), "{answer:?}");
-            let found: serde_json::Value = serde_json::from_str(&answer.stdout).expect("an object");
+            let found = place.answers(0, &[&asked[..], range].concat()).json();
             let factor = match command {
                 "fos" => found["factor_of_safety"].as_f64(),
                 _ => found["level_tops"]["factor"].as_f64(),
@@ -179,17 +171,14 @@ fn bolts_are_an_active_or_a_passive_support_as_the_case_says() {
 #[test]
 fn a_chip_is_named_beside_the_slope() {
     let place = Place::with("");
-    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
-    let search = ["fos", case, "--set", "joint_set[0].seed=5", "--tolerance", "0.02", "-o", "out", "--no-pictures"];
-    let answer = place.enmm(&search);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let search = ["fos", ROAD_CUT, "--set", "joint_set[0].seed=5", "--tolerance", "0.02", "-o", "out", "--no-pictures"];
+    let answer = place.answers(0, &search);
     let found = json(&place.path("out/fos.json"));
     let [slope, chip] = [&found["factor_of_safety"], &found["chips"][0]["factor_of_safety"]].map(|f| f.as_f64());
     let (slope, chip) = (slope.expect("a factor"), chip.expect("a factor of a chip"));
     assert!((slope / 1.3176 - 1.0).abs() < 0.01 && chip < slope, "{slope}, {chip}");
     assert!(answer.stdout.contains(&format!("slope {slope:.4}; chip of ")), "{answer:?}");
-    let all = place.enmm(&[&search[..], &["--least-area", "0"]].concat());
-    assert_eq!(all.status, Some(0), "{all:?}");
+    place.answers(0, &[&search[..], &["--least-area", "0"]].concat());
     assert_eq!(json(&place.path("out/fos.json"))["factor_of_safety"].as_f64(), Some(chip));
 }
 
@@ -199,10 +188,8 @@ fn a_chip_is_named_beside_the_slope() {
 fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
     let place = Place::with("");
     let (tolerance, within) = by_extent([("0.11", 0.055), ("0.03", 0.005), ("0.03", 0.005)]);
-    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
-    let search = ["fos", case, "--stage", "gravity", "--tolerance", tolerance, "-o", "out", "--no-pictures"];
-    let answer = place.enmm(&search);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let search = ["fos", ROAD_CUT, "--stage", "gravity", "--tolerance", tolerance, "-o", "out", "--no-pictures"];
+    place.answers(0, &search);
     let found = json(&place.path("out/fos.json"));
     let [low, high] = ["stable", "unstable"].map(|side| found["bracket"][side].as_f64().expect("an end"));
     assert!(low < 1.0313 && 1.0313 < high && high < 1.12 * low, "{low} to {high}");
@@ -211,8 +198,7 @@ fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
     assert_eq!(found["stage"], "gravity", "a factor without its stage would pass for that of the bolted cut");
     let bolts = found["bolts"].as_array().expect("bolts");
     assert!(bolts.iter().all(|bolt| bolt["state"] == "absent"), "{found}");
-    let refused = place.enmm(&["fos", case, "--stage", "quake", "-o", "none"]);
-    assert_eq!(refused.status, Some(2), "{refused:?}");
+    let refused = place.answers(2, &["fos", ROAD_CUT, "--stage", "quake", "-o", "none"]);
     assert!(refused.stderr.contains("gravity, bolts"), "{refused:?}");
 }
 
@@ -220,15 +206,12 @@ fn a_search_looks_at_the_slope_after_the_stage_that_is_named() {
 #[test]
 fn a_stage_that_draws_the_water_down_gives_the_dry_factor() {
     let place = Place::with("");
-    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
-    let text = fs::read_to_string(case).expect("an example");
+    let text = fs::read_to_string(ROAD_CUT).expect("an example");
     let text = text.replace("install = [\"rows\"]", "water = { level = -20.0 }");
     fs::write(place.path("case.toml"), text).expect("a case");
     let near = ["--low", "1.1", "--high", "1.2"];
     for (command, key, range) in [("fos", "factor_of_safety", &near[..]), ("bound", "level_tops", &[])] {
-        let answer = place.enmm(&[&[command, "case.toml", "--json"], range].concat());
-        assert_eq!(answer.status, Some(0), "{answer:?}");
-        let found: serde_json::Value = serde_json::from_str(&answer.stdout).expect("an object");
+        let found = place.answers(0, &[&[command, "case.toml", "--json"], range].concat()).json();
         let factor = found[key].as_f64().or(found[key]["factor"].as_f64()).expect("a factor");
         assert!((factor / 1.1627 - 1.0).abs() < 0.005, "{command}: {factor}");
     }
@@ -246,8 +229,7 @@ fn a_factor_above_the_upper_bound_is_at_most_that_and_has_a_status_of_its_own() 
          size = 5\n[rock.soil]\ndensity = 2000\nyoung = 100e6\npoisson = 0.3\nfriction_deg = 20\ncohesion = 10e3\n\
          tension = 0\n{sides}[[stage]]\nname = \"gravity\"\nkind = \"static\"\nduration_max = 20.0\n"
     ));
-    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--no-pictures", "--low", "1", "--high", "1.05"]);
-    assert_eq!(answer.status, Some(5), "{answer:?}");
+    let answer = place.answers(5, &["fos", "case.toml", "-o", "out", "--no-pictures", "--low", "1", "--high", "1.05"]);
     assert!(answer.stdout.contains("at most 0.91") && answer.stderr.contains("too coarse"), "{answer:?}");
     let found = json(&place.path("out/fos.json"));
     assert!(found["factor_of_safety"].is_null(), "{found}");

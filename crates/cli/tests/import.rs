@@ -14,8 +14,7 @@ fn place() -> Place {
 #[test]
 fn one_command_makes_the_section_of_a_drawing() {
     let place = place();
-    let answer = place.enmm(&["import", "section.dxf", "--examples"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["import", "section.dxf", "--examples"]);
     answer.assert_printed(&[
         "note: $INSUNITS is 4 (millimetres): coordinates are taken times 0.001",
         "TERRAIN  outline   1 LWPOLYLINE",
@@ -31,9 +30,7 @@ fn one_command_makes_the_section_of_a_drawing() {
         "open: layer \"FRAME\": 3DFACE is of a type that is not read; explode it in the drawing",
         "section.toml: fill in what is open, then: enmm check section.toml",
     ]);
-    let checked = place.enmm(&["check", "section.toml", "--json"]);
-    assert_eq!(checked.status, Some(0), "{checked:?}");
-    let found: serde_json::Value = serde_json::from_str(&checked.stdout).expect("JSON");
+    let found = place.answers(0, &["check", "section.toml", "--json"]).json();
     // Six sides, less the triangle of the face: 40 × 20 − (10 + 18)/2 × 16.
     assert!((found["total_area"].as_f64().expect("an area") - (800.0 - 224.0)).abs() < 1e-6, "{found}");
     assert!(found["blocks"].as_u64().expect("blocks") > 1, "{found}");
@@ -45,8 +42,7 @@ fn one_command_makes_the_section_of_a_drawing() {
 #[test]
 fn values_that_no_drawing_has_stay_open() {
     let place = place();
-    let answer = place.enmm(&["import", "section.dxf", "-o", "open.toml"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["import", "section.dxf", "-o", "open.toml"]);
     assert!(answer.stdout.contains("open: [rock.rock]: density, young, poisson"), "{answer:?}");
     let checked = place.enmm(&["check", "open.toml"]);
     checked.assert_bad_input(&["open.toml:", "is missing"]);
@@ -58,8 +54,7 @@ fn values_that_no_drawing_has_stay_open() {
         text = text.replace(&format!("# {key} =  # OPEN"), &format!("{key} = {value}  # OPEN"));
     }
     fs::write(place.path("open.toml"), text).expect("written");
-    let checked = place.enmm(&["check", "open.toml"]);
-    assert_eq!(checked.status, Some(0), "{checked:?}");
+    place.answers(0, &["check", "open.toml"]);
 }
 
 #[test]

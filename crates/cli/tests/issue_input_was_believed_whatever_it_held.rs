@@ -35,9 +35,7 @@ fn collection(properties: &str) -> String {
 }
 
 fn bound(place: &Place, case: &str) -> (f64, Vec<String>) {
-    let answer = place.enmm(&["bound", case, "--json"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
-    let found: serde_json::Value = serde_json::from_str(answer.stdout.trim()).expect("one JSON object");
+    let found = place.answers(0, &["bound", case, "--json"]).json();
     let warnings = found["warnings"].as_array().expect("a list").iter().map(ToString::to_string).collect();
     (found["level_tops"]["factor"].as_f64().expect("a factor"), warnings)
 }
@@ -85,8 +83,7 @@ fn a_slope_of_24_millimetres_was_a_note() {
         let small = slide("map.dxf").replace("size = 2.0", &format!("size = {}", 2.0 * scale));
         let small = small.replace("[40, 0]]", &format!("[{}, 0]]", 40.0 * scale));
         fs::write(place.path("case.toml"), &small).expect("written");
-        let answer = place.enmm(&["check", "case.toml"]);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let answer = place.answers(0, &["check", "case.toml"]);
         let first = format!("drawing                map.dxf: {name} ($INSUNITS is {unit}), taken times {scale}");
         assert_eq!(answer.stdout.lines().next(), Some(first.as_str()));
         let is_told = answer.stdout.contains("slopes are 1 m to 10 km long");
@@ -162,8 +159,7 @@ fn a_water_line_that_ends_in_the_rock_flooded_the_pit() {
     };
     let checked = |table: &str| {
         fs::write(place.path("case.toml"), case(table)).expect("written");
-        let answer = place.enmm(&["check", "case.toml"]);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let answer = place.answers(0, &["check", "case.toml"]);
         let told = |kind: &str| {
             let lines = answer.stdout.lines().filter_map(|line| line.strip_prefix(kind));
             lines.filter(|line| line.contains("above the ground")).map(str::to_owned).collect::<Vec<_>>()
@@ -207,8 +203,7 @@ fn notes_were_dropped_where_every_block_is_held() {
     let (error, above) = told(&answer);
     assert!(error.starts_with("error: ") && error.contains("every block is held"), "{error}");
     assert_eq!(above, listed);
-    let json = place.enmm(&["bound", "case.toml", "--json"]);
-    let found: serde_json::Value = serde_json::from_str(json.stdout.trim()).expect("one JSON object");
+    let found = place.enmm(&["bound", "case.toml", "--json"]).json();
     assert!(found["notes"].to_string().contains("keys not used: north"), "{found}");
     assert!(found["warnings"].to_string().contains("cuts no rock"), "{found}");
     // A search without end is no error, and has them all too.
@@ -233,8 +228,7 @@ fn other_files_than_drawings_were_no_drawings() {
         ("text.wkt", "POLYGON ((0 0, 40 0, 40 24, 12 24))\nLINESTRING (3 7.2, 30 28.8)\n".to_owned(), "joints"),
     ] {
         fs::write(place.path(name), text).expect("written");
-        let answer = place.enmm(&["import", name, "--examples", "-o", &format!("{name}.toml")]);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let answer = place.answers(0, &["import", name, "--examples", "-o", &format!("{name}.toml")]);
         answer.assert_printed(&["coordinates are in metres", "outline", "joint ", law]);
         let case = fs::read_to_string(place.path(&format!("{name}.toml"))).expect("a case");
         assert!(case.contains("joint_law") && !case.contains("[layers"), "{case}");
@@ -248,7 +242,7 @@ fn other_files_than_drawings_were_no_drawings() {
 #[test]
 fn states_of_another_keeper_were_damaged() {
     let place = Place::with(&crate::support::case(0.05));
-    assert_eq!(place.enmm(&["run", "case.toml", "-o", "out"]).status, Some(0));
+    place.answers(0, &["run", "case.toml", "-o", "out"]);
     let loaded = enmm_io::load_case(&place.path("case.toml")).expect("a case");
     let model = loaded.cosimulation().expect("a model");
     let of_run = fs::read(place.path("out/checkpoint.enmm")).expect("a checkpoint");
@@ -271,8 +265,7 @@ fn sets_at_their_own_region_were_held_by_rock() {
     let text = slide("none.json").replace("geometry_file = \"none.json\"", outline);
     let text = text.replace("[[fix]]", &format!("{set}[[joint]]\npoints = [[36.8, 2], [36.8, 23]]\n[[fix]]"));
     let place = Place::with(&text);
-    let checked = place.enmm(&["check", "case.toml"]);
-    assert_eq!(checked.status, Some(0), "{checked:?}");
+    let checked = place.answers(0, &["check", "case.toml"]);
     let held: Vec<&str> = checked.stdout.lines().filter(|line| line.contains("intact rock holds")).collect();
     assert!(held.iter().all(|line| !line.contains("J1 ends")), "{held:?}");
     // Two ends of a joint in the rock, near the lines of a set: these are called by their names.

@@ -7,13 +7,12 @@ fn results_of_another_case_are_replaced_by_force_alone() {
     let place = Place::with(&incline(0.65, ""));
     std::fs::copy(place.path("case.toml"), place.path("other.toml")).expect("a copy");
     for command in ["run", "fos"] {
-        let first = place.enmm(&[command, "case.toml", "-o", command]);
-        assert_eq!(first.status, Some(0), "{first:?}");
-        assert_eq!(place.enmm(&[command, "case.toml", "-o", command]).status, Some(0), "its own results are replaced");
-        let refused = place.enmm(&[command, "other.toml", "-o", command]);
-        assert_eq!(refused.status, Some(2), "{refused:?}");
+        place.answers(0, &[command, "case.toml", "-o", command]);
+        // Its own results are replaced.
+        place.answers(0, &[command, "case.toml", "-o", command]);
+        let refused = place.answers(2, &[command, "other.toml", "-o", command]);
         assert!(refused.stderr.contains("case.toml") && refused.stderr.contains("--force"), "{refused:?}");
-        assert_eq!(place.enmm(&[command, "other.toml", "-o", command, "--force"]).status, Some(0));
+        place.answers(0, &[command, "other.toml", "-o", command, "--force"]);
     }
 }
 
@@ -22,18 +21,18 @@ fn results_of_another_case_are_replaced_by_force_alone() {
 fn bounds_and_pictures_of_another_case_are_refused_as_well() {
     let place = Place::with(&incline(0.65, ""));
     std::fs::copy(place.path("case.toml"), place.path("other.toml")).expect("a copy");
-    assert_eq!(place.enmm(&["bound", "case.toml", "-o", "out"]).status, Some(0));
+    place.answers(0, &["bound", "case.toml", "-o", "out"]);
     for command in ["bound", "check"] {
-        assert_eq!(place.enmm(&[command, "case.toml", "-o", "out"]).status, Some(0), "its own results are replaced");
+        // Its own results are replaced.
+        place.answers(0, &[command, "case.toml", "-o", "out"]);
         let before = std::fs::read(place.path("out/bound.json")).expect("a record");
-        let refused = place.enmm(&[command, "other.toml", "-o", "out"]);
-        assert_eq!(refused.status, Some(2), "{refused:?}");
+        let refused = place.answers(2, &[command, "other.toml", "-o", "out"]);
         assert!(refused.stderr.contains("case.toml") && refused.stderr.contains("--force"), "{refused:?}");
         assert_eq!(std::fs::read(place.path("out/bound.json")).expect("a record"), before);
     }
     for command in ["check", "bound"] {
-        let forced = place.enmm(&[command, "other.toml", "-o", "out", "--force"]);
-        assert_eq!(forced.status, Some(0), "{forced:?}");
+        place.answers(0, &[command, "other.toml", "-o", "out", "--force"]);
     }
-    assert_eq!(place.enmm(&["fos", "case.toml", "-o", "out"]).status, Some(2), "the bound is that of the other case");
+    // The bound is that of the other case.
+    place.answers(2, &["fos", "case.toml", "-o", "out"]);
 }

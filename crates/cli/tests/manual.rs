@@ -9,12 +9,10 @@ const COMMANDS: [&str; 8] = ["run", "check", "fos", "bound", "import", "stereone
 #[test]
 fn every_command_has_a_page_and_is_completed() {
     let place = Place::with("");
-    let answer = place.enmm(&["man", "-o", "pages"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["man", "-o", "pages"]);
     let pages = place.names_in("pages");
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let script = place.enmm(&["completions", shell]);
-        assert_eq!(script.status, Some(0), "{script:?}");
+        let script = place.answers(0, &["completions", shell]);
         for command in COMMANDS {
             assert!(script.stdout.contains(command), "{command} is not completed in {shell}");
         }

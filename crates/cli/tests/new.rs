@@ -14,8 +14,7 @@ fn place() -> Place {
 fn every_new_case_runs_to_its_end_without_doubt() {
     let place = place();
     for kind in KINDS {
-        let answer = place.enmm(&["new", kind]);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        place.answers(0, &["new", kind]);
         let file = format!("{kind}.toml");
         let text = fs::read_to_string(place.path(&file)).expect("a case");
         assert!(
@@ -26,8 +25,7 @@ fn every_new_case_runs_to_its_end_without_doubt() {
         if kind != "pit" && kind != "slope" {
             arguments.extend(["--set", "stage[1].duration=0.2"]);
         }
-        let answer = place.enmm(&arguments);
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        place.answers(0, &arguments);
         let summary = json(&place.path(kind).join("summary.json"));
         for stage in summary["stages"].as_array().expect("stages") {
             assert_ne!(stage["converged"], serde_json::json!(false), "{kind}: {stage}");
@@ -40,12 +38,10 @@ fn every_new_case_runs_to_its_end_without_doubt() {
 #[test]
 fn a_new_slope_has_a_factor_of_safety_and_bolts_raise_it() {
     let place = place();
-    let answer = place.enmm(&["new", "slope", "-o", "mine.toml"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["new", "slope", "-o", "mine.toml"]);
     assert!(fs::read_to_string(place.path("mine.toml")).expect("a case").contains("enmm fos mine.toml"));
     let factor = |more: &[&str]| -> f64 {
-        let answer = place.enmm(&[&["bound", "mine.toml", "--json", "-o", "out"], more].concat());
-        let bound: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+        let bound = place.enmm(&[&["bound", "mine.toml", "--json", "-o", "out"], more].concat()).json();
         bound["level_tops"]["factor"].as_f64().expect("a factor")
     };
     let (with, without) = (factor(&[]), factor(&["--set", "stage[1].install=[]"]));
@@ -56,8 +52,7 @@ fn a_new_slope_has_a_factor_of_safety_and_bolts_raise_it() {
 fn a_new_pit_is_dug() {
     let place = place();
     place.enmm(&["new", "pit"]);
-    let answer = place.enmm(&["run", "pit.toml", "--quiet", "-o", "out"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["run", "pit.toml", "--quiet", "-o", "out"]);
     let blocks = fs::read_to_string(place.path("out/blocks.csv")).expect("a table");
     let removed: f64 = blocks.lines().skip(1).filter(|line| line.split(',').nth(2) == Some("1")).count() as f64;
     assert!(removed >= 3.0, "{blocks}");
@@ -67,8 +62,7 @@ fn a_new_pit_is_dug() {
 fn a_new_coupled_case_packs() {
     let place = place();
     place.enmm(&["new", "coupled"]);
-    let answer = place.enmm(&["check", "coupled.toml", "--json"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["check", "coupled.toml", "--json"]);
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn with_output(keys: &str) -> Place {
 #[test]
 fn a_run_draws_the_usual_pictures_at_the_end_of_each_stage() {
     let place = Place::with(&case(0.05));
-    assert_eq!(place.enmm(&["run", "case.toml"]).status, Some(0));
+    place.answers(0, &["run", "case.toml"]);
     let stages = ["stage1", "stage2"];
     let mut expected: Vec<String> = ["deformed", "history", "model"].map(|name| format!("{name}.png")).to_vec();
     expected.extend(stages.iter().flat_map(|s| {
@@ -43,7 +43,7 @@ fn a_run_draws_the_pictures_of_a_list_alone_and_removes_those_of_the_run_before(
     for name in ["stage7_joints.png", "stage_plan.png", "stage1_sketch.png"] {
         fs::write(place.path("case").join(name), "older").expect("written");
     }
-    assert_eq!(place.enmm(&["run", "case.toml"]).status, Some(0));
+    place.answers(0, &["run", "case.toml"]);
     let of_stage = |k: u32| ["normal_stress", "shear_stress", "velocity"].map(|name| format!("stage{k}_{name}.png"));
     let mut expected = vec!["covers.png".to_owned(), "stage1_sketch.png".to_owned(), "stage_plan.png".to_owned()];
     expected.extend([1, 2].into_iter().flat_map(of_stage));
@@ -55,7 +55,7 @@ fn a_run_draws_the_pictures_of_a_list_alone_and_removes_those_of_the_run_before(
 fn no_pictures_are_drawn_where_none_are_wanted() {
     for none in ["false", "[]"] {
         let place = with_output(&format!("pictures = {none}"));
-        assert_eq!(place.enmm(&["run", "case.toml"]).status, Some(0));
+        place.answers(0, &["run", "case.toml"]);
         assert_eq!(names(&place.path("case")), [""; 0]);
     }
 }
@@ -63,9 +63,8 @@ fn no_pictures_are_drawn_where_none_are_wanted() {
 #[test]
 fn an_ended_run_continued_in_another_directory_has_the_same_pictures() {
     let place = Place::with(&case(0.05));
-    assert_eq!(place.enmm(&["run", "case.toml", "-o", "first"]).status, Some(0));
-    let answer = place.enmm(&["run", "case.toml", "-o", "second", "--resume", "first/checkpoint.enmm"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["run", "case.toml", "-o", "first"]);
+    place.answers(0, &["run", "case.toml", "-o", "second", "--resume", "first/checkpoint.enmm"]);
     let [first, second] = ["first", "second"].map(|folder| pictures(&place.path(folder)));
     assert_eq!(first.len(), 9);
     assert!(first.keys().eq(second.keys()), "{:?}", second.keys());
@@ -75,8 +74,7 @@ fn an_ended_run_continued_in_another_directory_has_the_same_pictures() {
 #[test]
 fn a_check_draws_the_model() {
     let place = with_output("pictures = [\"covers\"]");
-    let answer = place.enmm(&["check", "case.toml", "-o", "seen"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["check", "case.toml", "-o", "seen"]);
     assert!(answer.stdout.contains("model.png"), "{answer:?}");
     assert_eq!(names(&place.path("seen")), ["covers.png", "model.png"]);
     assert_eq!(place.names(), ["case.toml", "seen"], "and writes nothing else");
@@ -85,8 +83,7 @@ fn a_check_draws_the_model() {
 #[test]
 fn a_check_that_cannot_draw_says_where() {
     let place = with_output("pictures = true");
-    let answer = place.enmm(&["check", "case.toml", "-o", "case.toml"]);
-    assert_eq!(answer.status, Some(2), "{answer:?}");
+    let answer = place.answers(2, &["check", "case.toml", "-o", "case.toml"]);
     assert!(answer.stderr.contains("case.toml") && answer.stderr.contains("choose another directory"), "{answer:?}");
 }
 

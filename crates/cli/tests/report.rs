@@ -25,10 +25,9 @@ fn all_results_of_a_case_are_printed_with_the_numbers_of_their_records() {
     let place = Place::with(&incline(0.65, NOTES));
     let wide = ["fos", "case.toml", "--low", "0.5", "--high", "3"];
     for arguments in [&["run", "case.toml"][..], &wide, &["bound", "case.toml"]] {
-        assert_eq!(place.enmm(arguments).status, Some(0), "{arguments:?}");
+        place.answers(0, arguments);
     }
-    let answer = place.enmm(&["report", "case", "--no-pdf"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["report", "case", "--no-pdf"]);
     assert!(answer.stdout.contains("report_a4.html"), "{answer:?}");
     let html = fs::read_to_string(place.path("case/report_a4.html")).expect("the report");
     let mut known = Vec::new();
@@ -70,7 +69,7 @@ fn pictures(folder: &Path) -> usize {
 fn the_notes_of_a_report_are_no_part_of_the_case() {
     let [with, without] = [NOTES, ""].map(|notes| Place::with(&incline(0.65, notes)));
     let bound = |place: &Place| {
-        assert_eq!(place.enmm(&["bound", "case.toml"]).status, Some(0));
+        place.answers(0, &["bound", "case.toml"]);
         json(&place.path("case/bound/bound.json"))
     };
     let [with, without] = [&with, &without].map(bound);
@@ -93,9 +92,8 @@ fn notes_that_say_nothing_and_folders_without_results_are_refused() {
 #[test]
 fn a_converter_that_does_not_start_is_named() {
     let place = Place::with(&incline(0.65, ""));
-    assert_eq!(place.enmm(&["bound", "case.toml"]).status, Some(0));
-    let answer = place.enmm(&["report", "case", "--converter", "no_such_program"]);
-    assert_eq!(answer.status, Some(3), "{answer:?}");
+    place.answers(0, &["bound", "case.toml"]);
+    let answer = place.answers(3, &["report", "case", "--converter", "no_such_program"]);
     assert!(answer.stderr.contains("no_such_program"), "{answer:?}");
     assert!(place.path("case/report_a4.html").is_file() && !place.path("case/report_a4.pdf").exists());
 }

@@ -11,8 +11,7 @@ use crate::support::{Place, case};
 /// A folder with an ended run in `first`.
 fn ended() -> Place {
     let place = Place::with(&case(0.05));
-    let answer = place.enmm(&["run", "case.toml", "-o", "first"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["run", "case.toml", "-o", "first"]);
     assert!(!answer.stderr.contains("overwritten"), "{answer:?}");
     place
 }
@@ -20,8 +19,7 @@ fn ended() -> Place {
 #[test]
 fn an_ended_run_continued_in_another_directory_keeps_its_rows_and_frames() {
     let place = ended();
-    let answer = place.enmm(&["run", "case.toml", "-o", "second", "--resume", "first/checkpoint.enmm"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["run", "case.toml", "-o", "second", "--resume", "first/checkpoint.enmm"]);
     for name in ["history.csv", "run.pvd", "blocks.csv", "frames/elements_0000.vtu", "history.png"] {
         let read = |folder: &str| fs::read(place.path(folder).join(name)).expect("readable");
         assert!(read("first") == read("second"), "{name}");
@@ -32,8 +30,7 @@ fn an_ended_run_continued_in_another_directory_keeps_its_rows_and_frames() {
 fn a_checkpoint_without_its_past_says_so() {
     let place = ended();
     fs::rename(place.path("first/checkpoint.enmm"), place.path("alone.enmm")).expect("moved");
-    let answer = place.enmm(&["run", "case.toml", "-o", "second", "--resume", "alone.enmm"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["run", "case.toml", "-o", "second", "--resume", "alone.enmm"]);
     assert!(answer.stderr.contains("warning: history.csv and frames in second begin at t = "), "{answer:?}");
     let summary = crate::support::json(&place.path("second/summary.json"));
     assert!(summary["warnings"].to_string().contains("begin at t = "), "{summary}");
@@ -61,8 +58,7 @@ fn what_killed_runs_left_is_swept_and_older_results_are_named() {
     for name in left.iter().chain(&kept) {
         fs::write(place.path("first").join(name), "half").expect("written");
     }
-    let answer = place.enmm(&["run", "case.toml", "-o", "first"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["run", "case.toml", "-o", "first"]);
     assert!(answer.stderr.contains("warning: the results of an earlier run in first are overwritten"), "{answer:?}");
     let there = |name: &&str| place.path("first").join(name).exists();
     assert!(!left.iter().any(there));

@@ -10,8 +10,7 @@ use crate::support::{Outcome, Place, case, json};
 #[test]
 fn every_promised_file_is_there_and_whole() {
     let place = Place::with(&case(0.1));
-    let answer = place.enmm(&["run", "case.toml"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["run", "case.toml"]);
     assert!(answer.stdout.contains("page to open         case/report.html"), "{answer:?}");
     assert_eq!(place.names(), ["case", "case.toml"], "results go to the name of the case");
     let names = ["summary.json", "history.csv", "blocks.csv", "run.pvd", "checkpoint.enmm", "report.html", "film.bin"];
@@ -31,7 +30,7 @@ fn every_promised_file_is_there_and_whole() {
 #[test]
 fn rows_of_the_history_rise_in_time_and_begin_and_end_with_the_run() {
     let place = Place::with(&case(0.1));
-    assert_eq!(place.enmm(&["run", "case.toml", "--quiet"]).status, Some(0));
+    place.answers(0, &["run", "case.toml", "--quiet"]);
     let history = fs::read_to_string(place.path("case/history.csv")).expect("history");
     let times: Vec<f64> =
         history.lines().skip(1).map(|row| row.split(',').next().expect("a time").parse().expect("a number")).collect();
@@ -59,8 +58,7 @@ fn quiet_runs_print_nothing_and_threads_change_nothing() {
 fn a_numerical_failure_exits_with_3_and_keeps_the_last_good_state() {
     let tiny = format!("{}\n[solver]\npenetration_limit = 1e-6\n", case(0.1));
     let place = Place::with(&tiny);
-    let answer = place.enmm(&["run", "case.toml"]);
-    assert_eq!(answer.status, Some(3), "{answer:?}");
+    let answer = place.answers(3, &["run", "case.toml"]);
     assert!(answer.stderr.contains("penetration") && answer.stderr.contains("checkpoint.enmm"), "{answer:?}");
     let summary = json(&place.path("case/summary.json"));
     assert_eq!(summary["status"], "failed");
@@ -122,10 +120,11 @@ fn an_interrupted_run_continues_to_the_results_of_an_uninterrupted_one() {
     let place = Place::with(&long_rest());
     stop(&place, "-INT", Some(130));
     assert_eq!(json(&place.path("parts/summary.json"))["status"], "interrupted");
-    assert_eq!(place.enmm(&CONTINUED).status, Some(0));
-    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
+    place.answers(0, &CONTINUED);
+    place.answers(0, &["run", "case.toml", "-o", "whole", "--quiet"]);
     assert_same(&place);
-    assert_eq!(place.enmm(&CONTINUED).status, Some(0), "a finished run writes its results again");
+    // A finished run writes its results again.
+    place.answers(0, &CONTINUED);
     assert_same(&place);
 }
 
@@ -134,8 +133,8 @@ fn an_interrupted_run_continues_to_the_results_of_an_uninterrupted_one() {
 fn a_killed_run_continues_from_its_last_checkpoint() {
     let place = Place::with(&format!("{}\n[output]\ncheckpoint_interval = 7.0\n", long_rest()));
     stop(&place, "-KILL", None);
-    assert_eq!(place.enmm(&CONTINUED).status, Some(0));
-    assert_eq!(place.enmm(&["run", "case.toml", "-o", "whole", "--quiet"]).status, Some(0));
+    place.answers(0, &CONTINUED);
+    place.answers(0, &["run", "case.toml", "-o", "whole", "--quiet"]);
     assert_same(&place);
 }
 
@@ -166,8 +165,7 @@ fn energy_from_nowhere_makes_a_run_fail() {
     // Rock of 50 Pa instead of 50 GPa: the stage has two steps of 2.5 s.
     let soft = case(5.0).replace("young = 1e9", "young = 50").replace("duration = 0.2", "duration = 5");
     let place = Place::with(soft.split("[[stage]]\nname = \"slide\"").next().expect("a stage"));
-    let answer = place.enmm(&["run", "case.toml"]);
-    assert_eq!(answer.status, Some(3), "{answer:?}");
+    let answer = place.answers(3, &["run", "case.toml"]);
     assert!(answer.stderr.contains("warning: rock.granite.young: is 50 Pa"), "{answer:?}");
     assert!(answer.stderr.contains("error: the energy residual is 1.0"), "{answer:?}");
 }
@@ -177,7 +175,7 @@ fn the_schema_is_printed_as_json() {
     let place = Place::with("");
     let answer = place.enmm(&["schema"]);
     assert_eq!((answer.status, answer.stderr.as_str()), (Some(0), ""));
-    let schema: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    let schema = answer.json();
     assert!(schema["properties"]["mesh"].is_object());
 }
 
@@ -185,8 +183,7 @@ fn the_schema_is_printed_as_json() {
 #[test]
 fn blocks_that_overlap_are_a_warning_and_numbers_of_the_summary() {
     let place = Place::with(include_str!("../../../ffi/capi/tests/cases/soft.toml"));
-    let answer = place.enmm(&["run", "case.toml"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["run", "case.toml"]);
     let summary = json(&place.path("case/summary.json"));
     let number = |key: &str| summary[key].as_f64().expect("a number");
     assert_eq!(number("overlapping_pairs"), 1.0);

@@ -9,15 +9,13 @@ use crate::support::{Place, case, incline, json};
 fn a_factor_is_that_of_the_value_that_is_set() {
     let place = Place::with(&incline(0.4, ""));
     let friction = format!("joint_law.plane.friction_deg={:?}", 0.65f64.atan().to_degrees());
-    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--tolerance", "0.01", "--set", &friction]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["fos", "case.toml", "-o", "out", "--tolerance", "0.01", "--set", &friction]);
     let found = json(&place.path("out/fos.json"));
     assert!((found["factor_of_safety"].as_f64().expect("a factor") / 1.3 - 1.0).abs() < 0.015, "{found}");
     assert_eq!(found["settings"], serde_json::json!([friction]));
     let page = fs::read_to_string(place.path("out/report.html")).expect("a page");
     assert!(page.len() > 1000);
-    let answer = place.enmm(&["bound", "case.toml", "--json", "-o", "out", "--set", &friction]);
-    let bound: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    let bound = place.enmm(&["bound", "case.toml", "--json", "-o", "out", "--set", &friction]).json();
     let factor = bound["level_tops"]["factor"].as_f64().expect("a bound");
     assert!((factor / 1.3 - 1.0).abs() < 3e-4, "{factor}");
 }
@@ -28,8 +26,7 @@ fn run_check_and_fmu_take_settings() {
     let settings =
         ["--set", "stage[1].duration=0.02", "--set", "title=Two other blocks", "--set", "solver.sweeps_max=50"];
     let run = |more: &[&str], out: &str| {
-        let answer = place.enmm(&[&["run", "case.toml", "--quiet", "-o", out], more].concat());
-        assert_eq!(answer.status, Some(0), "{answer:?}");
+        place.answers(0, &[&["run", "case.toml", "--quiet", "-o", out], more].concat());
         json(&place.path(out).join("summary.json"))
     };
     let (set, plain) = (run(&settings, "set"), run(&[], "plain"));
@@ -40,17 +37,14 @@ fn run_check_and_fmu_take_settings() {
     // A value that is set belongs to the case: the same hash as of a file with that value.
     let text = case(0.02).replace("Two blocks", "Two other blocks") + "[solver]\nsweeps_max = 50\n";
     fs::write(place.path("other.toml"), text).expect("written");
-    let answer = place.enmm(&["run", "other.toml", "--quiet", "-o", "other"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    place.answers(0, &["run", "other.toml", "--quiet", "-o", "other"]);
     assert_eq!(json(&place.path("other/summary.json"))["case_hash"], set["case_hash"]);
     for file in ["history.csv", "blocks.csv"] {
         let read = |folder: &str| fs::read(place.path(folder).join(file)).expect("readable");
         assert_eq!(read("other"), read("set"), "{file}");
     }
-    let answer = place.enmm(&["check", "case.toml", "--json", "--set", "mesh.size=0.3"]);
-    let finer: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
-    let answer = place.enmm(&["check", "case.toml", "--json"]);
-    let coarse: serde_json::Value = serde_json::from_str(&answer.stdout).expect("JSON");
+    let finer = place.enmm(&["check", "case.toml", "--json", "--set", "mesh.size=0.3"]).json();
+    let coarse = place.enmm(&["check", "case.toml", "--json"]).json();
     assert!(finer["elements"].as_u64() > coarse["elements"].as_u64());
 }
 
@@ -87,8 +81,7 @@ fn a_setting_that_cannot_be_used_is_named() {
 fn fos_names_the_stages_it_leaves_out_before_it_starts() {
     let stage = "[[stage]]\nname = \"quake\"\nkind = \"dynamic\"\nduration = 1.0\n";
     let place = Place::with(&incline(0.65, stage));
-    let answer = place.enmm(&["fos", "case.toml", "-o", "out", "--tolerance", "0.1"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["fos", "case.toml", "-o", "out", "--tolerance", "0.1"]);
     let first = answer.stderr.lines().next().unwrap_or_default();
     assert_eq!(first, "warning: stages from the first dynamic one on are left out: quake");
 }

@@ -27,8 +27,7 @@ spacing = 1
 #[test]
 fn sets_in_space_fail_as_computed_by_hand() {
     let place = Place::with(&incline(30f64.to_radians().tan(), SETS));
-    let answer = place.enmm(&["stereonet", "case.toml", "--face", "65/120", "-o", "net.svg"]);
-    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let answer = place.answers(0, &["stereonet", "case.toml", "--face", "65/120", "-o", "net.svg"]);
     answer.assert_printed(&[
         "face                  65.0°/120.0°",
         // tan(apparent) = tan 40°·cos(125° − 300°), so 39.9° against the x axis; to the left.

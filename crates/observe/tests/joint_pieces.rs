@@ -6,44 +6,26 @@ use enmm_observe::{JointPiece, Joints};
 /// A block of 2 m × 1 m on a base, which a crack enters from above and does not part, beside a block on another base.
 const CASE: &str = r#"
 title = "Two blocks on bases"
-[domain]
-outline = [[0, 0], [4, 0], [4, 1], [3, 1], [3, 2], [1, 2], [1, 1], [0, 1]]
-islands = [[[6, 0], [8, 0], [8, 2], [6, 2]]]
-joint_law = "bed"
-[mesh]
-size = 0.37
-origin = [0.07, 0.03]
-[[joint]]
-points = [[1, 1], [3, 1]]
-law = "bed"
-[[joint]]
-points = [[2, 2.1], [2, 1.6]]
-law = "crack"
-[[joint]]
-points = [[5.9, 1], [8.1, 1]]
-law = "bed"
-[rock.granite]
-density = 2600
-young = 1e9
-poisson = 0.25
-[joint_law.bed]
-friction_deg = 30
-[joint_law.crack]
-friction_deg = 30
-[[fix]]
-block = [2, 0.5]
-[[fix]]
-block = [7, 0.5]
-[[stage]]
-name = "rest"
-kind = "static"
-duration = 5.0
-convergence = 1e-6
-[[stage]]
-name = "dig"
-kind = "static"
-duration = 0.01
-excavate = [[7, 1.5]]
+domain.outline = [[0, 0], [4, 0], [4, 1], [3, 1], [3, 2], [1, 2], [1, 1], [0, 1]]
+domain.islands = [[[6, 0], [8, 0], [8, 2], [6, 2]]]
+domain.joint_law = "bed"
+mesh = { size = 0.37, origin = [0.07, 0.03] }
+joint = [
+    { points = [[1, 1], [3, 1]], law = "bed" },
+    { points = [[2, 2.1], [2, 1.6]], law = "crack" },
+    { points = [[5.9, 1], [8.1, 1]], law = "bed" },
+]
+rock.granite = { density = 2600, young = 1e9, poisson = 0.25 }
+joint_law.bed.friction_deg = 30
+joint_law.crack.friction_deg = 30
+fix = [
+    { block = [2, 0.5] },
+    { block = [7, 0.5] },
+]
+stage = [
+    { name = "rest", kind = "static", duration = 5.0, convergence = 1e-6 },
+    { name = "dig", kind = "static", duration = 0.01, excavate = [[7, 1.5]] },
+]
 "#;
 /// Weight of 1 m² of rock (N/m).
 const WEIGHT: f64 = 2600.0 * 9.81;
@@ -51,12 +33,7 @@ const WEIGHT: f64 = 2600.0 * 9.81;
 fn at_rest() -> Simulation {
     let loaded = enmm_io::parse_case(CASE, "case", "".as_ref()).expect("a case");
     let mut simulation = Simulation::new(loaded.case).expect("a model");
-    for step in 0.. {
-        let report = simulation.advance(step % 50 == 0).expect("a step");
-        if step % 50 == 0 && simulation.stage_is_over(Some(&report)) {
-            break;
-        }
-    }
+    simulation.run_stage().expect("no failure");
     simulation
 }
 

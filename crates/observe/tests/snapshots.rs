@@ -4,34 +4,11 @@ use enmm::geometry::polygon;
 use enmm::model::Simulation;
 use enmm_observe::Snapshot;
 
+use crate::rest::{FLIGHT, rest};
+
 /// A block of 1 m × 1 m on a held base of 6 m × 1 m, after all stages.
 fn run(stage: &str, more: &str) -> Simulation {
-    let text = format!(
-        r#"
-title = "rest"
-[domain]
-outline = [[0, 0], [6, 0], [6, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]]
-joint_law = "plane"
-[mesh]
-size = 0.3
-origin = [0.07, 0.03]
-[[joint]]
-points = [[1, 1], [2, 1]]
-[rock.granite]
-density = 2600
-young = 1e9
-poisson = 0.25
-[joint_law.plane]
-friction_deg = 20
-[[fix]]
-block = [3, 0.5]
-{more}
-[[stage]]
-name = "one"
-{stage}
-"#
-    );
-    let loaded = enmm_io::parse_case(&text, "case", "".as_ref()).expect("a case");
+    let loaded = enmm_io::parse_case(&rest(stage, more), "case", "".as_ref()).expect("a case");
     let mut simulation = Simulation::new(loaded.case).expect("a model");
     simulation.run_stage().expect("no failure");
     simulation
@@ -43,15 +20,7 @@ fn area(snapshot: &Snapshot) -> f64 {
 
 #[test]
 fn snapshots_show_blocks_where_their_states_have_them() {
-    let flight = r#"
-[[initial_velocity]]
-block = [1.5, 1.5]
-velocity = [0.5, 2.0]
-angular_velocity = 1.5
-[gravity]
-y = 0
-"#;
-    let simulation = run("kind = \"dynamic\"\nduration = 0.8\ndamping = 0", flight);
+    let simulation = run("kind = \"dynamic\"\nduration = 0.8\ndamping = 0", FLIGHT);
     let (snapshot, blocks) = (Snapshot::of(&simulation), simulation.block_states());
     // The block stretches by ρω²L²/E ~ 1e-6 as it spins.
     assert!((area(&snapshot) - 7.0).abs() < 1e-6, "{}", area(&snapshot));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::sample::{Sample, profile, sample};
+use crate::sample::{PROFILE, Sample, sample};
 use enmm::geometry::{Point, Vector};
 use enmm::model::ContactState;
 use enmm_observe::{BondState, Boundary, Polygons, Snapshot};
@@ -33,6 +33,11 @@ fn check(picture: &Picture, name: &str) {
     assert!((300..=1400).contains(&pixels.height()), "{name} is {} px high", pixels.height());
     let inked = pixels.pixels().iter().filter(|pixel| pixel.red() < 250).count();
     assert!(inked > 1000, "{name} is blank");
+}
+
+/// Outline of the slope.
+fn profile() -> Polygons {
+    Polygons { start: vec![0, PROFILE.len() as u32], points: PROFILE.map(Point::from).to_vec() }
 }
 
 fn series(name: &str, unit: &str, value: impl Fn(f64) -> f64) -> Series {

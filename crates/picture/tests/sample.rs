@@ -1,19 +1,16 @@
-//! A made-up jointed slope, 100 m × 60 m, and what decorates its picture: no mechanics, only shapes and a slide.
-
-use std::collections::{BTreeMap, BTreeSet};
+//! A jointed slope, 100 m × 60 m, and what decorates its picture: no mechanics, only shapes and a slide.
 
 use enmm::geometry::{Point, Vector};
-use enmm::model::ContactState;
-use enmm_observe::{BoltCondition, BondState, Boundary, JointPiece, Polygons, Snapshot};
-use enmm_picture::{BoltMark, Held, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark};
+use enmm::model::{ContactState, Simulation};
+use enmm_observe::{BoltCondition, BondState, JointPiece, Snapshot};
+use enmm_picture::{
+    BoltMark, Held, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_annotations, stars,
+};
 
 /// Slope profile (m), counter-clockwise.
 pub const PROFILE: [[f64; 2]; 6] = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [56.0, 60.0], [32.0, 15.0], [0.0, 15.0]];
 /// The face of the slope (m).
 const PROFILE_FACE: [[f64; 2]; 2] = [[56.0, 60.0], [32.0, 15.0]];
-/// Directions (degrees) of the two joint sets.
-const DIPS: [f64; 2] = [38.0, 112.0];
-
 /// A slope before it moves, and what decorates its picture.
 pub struct Sample {
     pub reference: Snapshot,
@@ -22,55 +19,40 @@ pub struct Sample {
     pub stars: Vec<(Point, u32)>,
 }
 
-pub fn profile() -> Polygons {
-    let mut polygons = empty();
-    push(&mut polygons, &PROFILE.map(Point::from));
-    polygons
-}
-
-/// Blocks of about `spacing` (m), triangles of side `mesh` (m).
+/// Blocks of about `spacing` (m), triangles of side `mesh` (m); stresses by weight.
 pub fn sample(spacing: f64, mesh: f64) -> Sample {
-    let mut reference = Snapshot {
-        elements: empty(),
-        joint_laws: vec!["bedding".to_owned(), "cross joint".to_owned()],
-        rocks: vec!["granite".to_owned()],
-        ..Snapshot::default()
+    let text = format!(
+        r#"
+title = "Rock slope with two joint sets"
+domain.outline = {PROFILE:?}
+mesh = {{ size = {mesh:?}, least_block = 0 }}
+joint_set = [
+    {{ angle_deg = 38, spacing = {spacing:?}, spacing_sd = {sd:?}, seed = 1, law = "bedding" }},
+    {{ angle_deg = 112, spacing = {spacing:?}, spacing_sd = {sd:?}, seed = 2, law = "cross joint" }},
+]
+rock.granite = {{ density = 2650, young = 5e9, poisson = 0.25 }}
+joint_law = {{ bedding = {{ friction_deg = 30 }}, "cross joint" = {{ friction_deg = 30 }} }}
+fix = [{{ block = [50, 1] }}]
+stage = [{{ name = "rest", kind = "static", duration = 1 }}]
+"#,
+        sd = 0.2 * spacing
+    );
+    let case = enmm_io::parse_case(&text, "slope.toml", "".as_ref()).unwrap_or_else(|e| panic!("{e}")).case;
+    let simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
+    let mut reference = Snapshot::of(&simulation);
+    let elements = &reference.elements;
+    let stress = |k: usize| {
+        let weight = -26e3 * (60.0 - elements.get(k)[0].y);
+        [0.4 * weight, weight, 0.1 * weight]
     };
-    let mut covers: BTreeMap<[i64; 2], BTreeSet<u32>> = BTreeMap::new();
-    let mut trace_segments = Vec::new();
-    for block in blocks(spacing) {
-        let id = reference.boundaries.len() as u32;
-        for (nodes, triangle) in triangles(&block, mesh) {
-            let element = clipped(&block, &triangle);
-            if area(&element) > 1e-9 {
-                push(&mut reference.elements, &element);
-                reference.block.push(id);
-                for node in nodes {
-                    covers.entry(node).or_default().insert(id);
-                }
-            }
-        }
-        trace_segments.extend(edges(&block).filter_map(|ends| Some((ends, set_of(&ends)?))));
-        let mut loops = empty();
-        push(&mut loops, &block);
-        let fixed = block.iter().any(|corner| corner.y < 1e-6);
-        reference.boundaries.push(Boundary {
-            block: id,
-            fixed,
-            displacement: Vector::zeros(),
-            reference: loops.points.clone(),
-            loops,
-        });
+    reference.stress = (0..elements.len()).map(stress).collect();
+    reference.stress_zz = reference.stress.iter().map(|[xx, yy, _]| 0.25 * (xx + yy)).collect();
+    let ModelAnnotations { trace_segments, counts, .. } = model_annotations(&simulation);
+    Sample {
+        reference,
+        annotations: ModelAnnotations { trace_segments, counts, ..annotations() },
+        stars: stars(&simulation),
     }
-    complete(&mut reference);
-    let stars: Vec<(Point, u32)> =
-        covers.iter().map(|(node, blocks)| (lattice(*node, mesh), blocks.len() as u32)).collect();
-    let counts = vec![
-        format!("{} blocks", reference.boundaries.len()),
-        format!("{} manifold elements", reference.elements.len()),
-    ];
-    let annotations = ModelAnnotations { counts, trace_segments, ..annotations() };
-    Sample { reference, annotations, stars }
 }
 
 /// One of every mark.
@@ -182,115 +164,4 @@ fn displacement(place: &Point, centre: &Point, slide: f64) -> Vector {
     let turn = 0.03 * amount * (centre.x * 1.7).sin();
     let arm = place - centre;
     Vector::new(-dip.cos(), -dip.sin()) * amount + Vector::new(-arm.y, arm.x) * turn
-}
-
-fn complete(snapshot: &mut Snapshot) {
-    let elements = &snapshot.elements;
-    snapshot.displacement = vec![Vector::zeros(); elements.points.len()];
-    snapshot.velocity = snapshot.displacement.clone();
-    snapshot.rock = vec![0; elements.len()];
-    snapshot.stress = (0..elements.len())
-        .map(|k| {
-            let weight = -26e3 * (60.0 - elements.get(k)[0].y);
-            [0.4 * weight, weight, 0.1 * weight]
-        })
-        .collect();
-    snapshot.stress_zz = snapshot.stress.iter().map(|[xx, yy, _]| 0.25 * (xx + yy)).collect();
-}
-
-/// Parts of the profile between the joints of both sets.
-fn blocks(spacing: f64) -> Vec<Vec<Point>> {
-    let [along, across] = DIPS.map(|dip| Vector::new(dip.to_radians().cos(), dip.to_radians().sin()));
-    let profile = profile().points;
-    let count = (140.0 / spacing) as i64;
-    let jitter = |k: i64, seed: f64| spacing * (k as f64 + 0.25 * (k as f64 * 2.3 + seed).sin());
-    let cells = (-count..count).flat_map(|i| (-count..count).map(move |j| (i, j)));
-    let cell = |(i, j): (i64, i64)| {
-        let corner = |i, j| Point::new(50.0, 30.0) + along * jitter(i, 4.0) + across * jitter(j, 1.0);
-        [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
-    };
-    cells.map(|at| without_spikes(clipped(&profile, &cell(at)))).filter(|block| area(block) > 1e-6).collect()
-}
-
-/// Triangles of the lattice that may meet the block, with their nodes.
-fn triangles(block: &[Point], mesh: f64) -> Vec<([[i64; 2]; 3], Vec<Point>)> {
-    let of = |part: fn(&Point) -> f64| {
-        let values: Vec<f64> = block.iter().map(part).collect();
-        (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-    };
-    let ((left, right), (low, high)) = (of(|p| p.x), of(|p| p.y));
-    let rise = mesh * 0.75_f64.sqrt();
-    let mut found = Vec::new();
-    for j in (low / rise).floor() as i64 - 1..=(high / rise).ceil() as i64 {
-        let shift = j as f64 * 0.5;
-        for i in (left / mesh - shift).floor() as i64 - 2..=(right / mesh - shift).ceil() as i64 + 1 {
-            for nodes in [[[i, j], [i + 1, j], [i, j + 1]], [[i + 1, j], [i + 1, j + 1], [i, j + 1]]] {
-                found.push((nodes, nodes.iter().map(|node| lattice(*node, mesh)).collect()));
-            }
-        }
-    }
-    found
-}
-
-fn lattice([i, j]: [i64; 2], mesh: f64) -> Point {
-    Point::new((i as f64 + 0.5 * j as f64) * mesh, j as f64 * mesh * 0.75_f64.sqrt())
-}
-
-/// The part of `subject` inside the convex `clip` (Sutherland and Hodgman).
-fn clipped(subject: &[Point], clip: &[Point]) -> Vec<Point> {
-    edges(clip).fold(subject.to_vec(), |polygon, [a, b]| {
-        let side = |p: &Point| (b - a).perp(&(p - a));
-        let mut kept = Vec::new();
-        for [p, q] in edges(&polygon) {
-            let (at_p, at_q) = (side(&p), side(&q));
-            if at_p >= 0.0 {
-                kept.push(p);
-            }
-            if (at_p > 0.0 && at_q < 0.0) || (at_p < 0.0 && at_q > 0.0) {
-                kept.push(p + (q - p) * (at_p / (at_p - at_q)));
-            }
-        }
-        kept
-    })
-}
-
-/// Without corners at which the outline turns back on itself, which clipping an outline that is not convex leaves.
-fn without_spikes(mut polygon: Vec<Point>) -> Vec<Point> {
-    while let Some(k) = (0..polygon.len()).find(|&k| is_spike(&polygon, k)) {
-        polygon.remove(k);
-    }
-    polygon
-}
-
-fn is_spike(polygon: &[Point], k: usize) -> bool {
-    let n = polygon.len();
-    let (to, from) = (polygon[k] - polygon[(k + n - 1) % n], polygon[(k + 1) % n] - polygon[k]);
-    to.perp(&from).abs() <= 1e-9 && to.dot(&from) <= 0.0
-}
-
-fn edges(polygon: &[Point]) -> impl Iterator<Item = [Point; 2]> {
-    (0..polygon.len()).map(|k| [polygon[k], polygon[(k + 1) % polygon.len()]])
-}
-
-fn area(polygon: &[Point]) -> f64 {
-    0.5 * edges(polygon).map(|[p, q]| p.perp(&q)).sum::<f64>()
-}
-
-/// The joint set along which an edge runs.
-fn set_of([from, to]: &[Point; 2]) -> Option<u32> {
-    let along = to - from;
-    let runs = |dip: &f64| {
-        let (sin, cos) = dip.to_radians().sin_cos();
-        along.norm() > 1e-6 && along.perp(&Vector::new(cos, sin)).abs() < 1e-6 * along.norm()
-    };
-    DIPS.iter().position(runs).map(|set| set as u32)
-}
-
-fn empty() -> Polygons {
-    Polygons { start: vec![0], points: Vec::new() }
-}
-
-fn push(polygons: &mut Polygons, corners: &[Point]) {
-    polygons.points.extend_from_slice(corners);
-    polygons.start.push(polygons.points.len() as u32);
 }

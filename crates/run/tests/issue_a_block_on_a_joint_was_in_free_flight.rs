@@ -8,27 +8,15 @@ use enmm_run::RunOptions;
 /// A chip on a slope slides on its joint for as long as the stage goes on.
 const CHIP: &str = r#"
 title = "A chip that slides"
-[domain]
-outline = [[0, 0], [40, 0], [40, 0.5], [39, 0.5], [0, 20]]
-islands = [[[10, 15], [10.4, 14.8], [10.4, 15.2]]]
-[[joint]]
-points = [[0, 0.3], [40, 0.3]]
-[mesh]
-size = 2
-[rock.granite]
-density = 2650
-young = 5e9
-poisson = 0.25
-[joint_law.joints]
-friction_deg = 5
-[[fix]]
-edge = [[0, 0], [40, 0]]
-[[stage]]
-name = "rest"
-kind = "static"
-duration_max = 2
-[output]
-pictures = false
+domain.outline = [[0, 0], [40, 0], [40, 0.5], [39, 0.5], [0, 20]]
+domain.islands = [[[10, 15], [10.4, 14.8], [10.4, 15.2]]]
+joint = [{ points = [[0, 0.3], [40, 0.3]] }]
+mesh.size = 2
+rock.granite = { density = 2650, young = 5e9, poisson = 0.25 }
+joint_law.joints.friction_deg = 5
+fix = [{ edge = [[0, 0], [40, 0]] }]
+stage = [{ name = "rest", kind = "static", duration_max = 2 }]
+output.pictures = false
 "#;
 
 #[test]

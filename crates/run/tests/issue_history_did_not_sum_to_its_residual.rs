@@ -12,46 +12,17 @@ use enmm_run::{RunOptions, RunStatus};
 /// Weak rock on a quiet base slips on a joint that a bolt holds, under a pressure on its top: every term is there.
 const CASE: &str = r#"
 title = "all terms"
-[domain]
-outline = [[0, 0], [4, 0], [4, 2], [0, 2]]
-[mesh]
-size = 0.6
-origin = [0.031, 0.017]
-[rock.rock]
-density = 2500
-young = 1e8
-poisson = 0.25
-cohesion = 5e3
-friction_deg = 20
-dilation_deg = 20
-[joint_law.joint]
-friction_deg = 5
-[[joint]]
-points = [[-1, 1.5], [5, 0.6]]
-[[bolt]]
-points = [[2.0, 1.9], [2.1, 0.3]]
-young = 2e11
-area = 1e-3
-pretension = 2e4
-yield_force = 4e4
-[[quiet]]
-edge = [[0, 0], [4, 0]]
-[[load]]
-kind = "pressure"
-edge = [[0, 2], [4, 2]]
-pressure = 3e4
-[[initial_velocity]]
-block = [2, 1.8]
-velocity = [1.0, 0.0]
-[[stage]]
-name = "slide"
-kind = "dynamic"
-duration = 0.1
-damping = 0.05
-[output]
-frames = false
-pictures = false
-history_interval = 0.01
+domain.outline = [[0, 0], [4, 0], [4, 2], [0, 2]]
+mesh = { size = 0.6, origin = [0.031, 0.017] }
+rock.rock = { density = 2500, young = 1e8, poisson = 0.25, cohesion = 5e3, friction_deg = 20, dilation_deg = 20 }
+joint_law.joint.friction_deg = 5
+joint = [{ points = [[-1, 1.5], [5, 0.6]] }]
+bolt = [{ points = [[2.0, 1.9], [2.1, 0.3]], young = 2e11, area = 1e-3, pretension = 2e4, yield_force = 4e4 }]
+quiet = [{ edge = [[0, 0], [4, 0]] }]
+load = [{ kind = "pressure", edge = [[0, 2], [4, 2]], pressure = 3e4 }]
+initial_velocity = [{ block = [2, 1.8], velocity = [1.0, 0.0] }]
+stage = [{ name = "slide", kind = "dynamic", duration = 0.1, damping = 0.05 }]
+output = { frames = false, pictures = false, history_interval = 0.01 }
 "#;
 
 /// Rows of `history.csv` by the names of its columns.

@@ -26,24 +26,13 @@ fn check(folder: &Path, file: &str, snap_tolerance: f64, mesh: &str) -> Check {
     let text = format!(
         r#"
 title = "shared data"
-[domain]
-geometry_file = "{file}"
-joint_law = "joint"
-snap_tolerance = {snap_tolerance:?}
-extend_ends = 0
+domain = {{ geometry_file = "{file}", joint_law = "joint", snap_tolerance = {snap_tolerance:?}, extend_ends = 0 }}
+rock.any = {{ density = 1, young = 1e9, poisson = 0.25 }}
+joint_law.joint.friction_deg = 30
+stage = [{{ name = "any", kind = "static", duration = 1 }}]
 [mesh]
-{mesh}
 least_block = 0
-[rock.any]
-density = 1
-young = 1e9
-poisson = 0.25
-[joint_law.joint]
-friction_deg = 30
-[[stage]]
-name = "any"
-kind = "static"
-duration = 1
+{mesh}
 "#
     );
     let loaded = enmm_io::parse_case(&text, "shared.toml", folder).unwrap_or_else(|e| panic!("{file}: {e}"));

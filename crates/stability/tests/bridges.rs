@@ -1,17 +1,12 @@
 //! Rock bridges that break: Jennings' factor (A11), a face that a bridge holds, brittle bridges beside ductile ones,
 //! and an overhang that breaks by the bending of its root.
 
-use std::path::Path;
-
+use crate::common::case;
 use enmm::model::Case;
 use enmm_stability::limit_analysis::{DUCTILE as DUCTILE_NOTE, bound};
 use enmm_stability::strength_reduction::{End, ReductionOptions, factor_of_safety};
 
 use crate::common::extent::by_extent;
-
-fn case(text: &str) -> Case {
-    enmm_io::parse_case(text, "case.toml", Path::new("")).unwrap_or_else(|e| panic!("{e}")).case
-}
 
 /// A11: a block of 1 MN/m on a plane of 10 m at 40°, of which the share `k` is rock of 1 MPa; φ is 30° all along.
 /// Gravity is turned instead of the plane.

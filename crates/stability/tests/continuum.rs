@@ -1,13 +1,11 @@
 //! Limit analysis of rock that yields brackets what is known of slopes, footings and hanging rock, agrees with limit
 //! analysis of rigid blocks where rock is strong, and refuses by name what it cannot treat.
 
-use std::path::Path;
-
 use crate::common::extent::by_extent;
-use crate::common::simulation;
-use enmm_io::{load_case, parse_case};
+use crate::common::{case, example, simulation};
+use crate::support::assert_refused;
+use enmm_stability::limit_analysis::bound;
 use enmm_stability::limit_analysis::continuum::{Bracket, bracket};
-use enmm_stability::limit_analysis::{BoundError, bound};
 
 const STAGE: &str = "[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20.0\n";
 /// Density (kg/m³) of 20 kN/m³.
@@ -166,9 +164,8 @@ fn rock_slides_on_a_weak_joint_as_a_block_does() {
 /// Rock that is as good as rigid: the upper bound is that of rigid blocks, with water and bolts.
 #[test]
 fn strong_rock_has_the_bound_of_rigid_blocks() {
-    for name in ["plane_slide.toml", "block_on_incline.toml"] {
-        let path = crate::common::root().join("examples/cases").join(name);
-        let mut case = load_case(&path).expect("a case").case;
+    for name in ["plane_slide", "block_on_incline"] {
+        let mut case = case(&example(name));
         let blocks = bound(&case).expect("a bound").associated.factor.value();
         for rock in case.rocks.values_mut() {
             (rock.cohesion, rock.friction_deg) = (Some(1e9), Some(45.0));
@@ -215,13 +212,6 @@ fn what_rock_that_yields_cannot_bear_is_refused_by_its_key() {
         (slope("[[quiet]]\nedge = [[20, 10], [32, 10]]\n"), "quiet[0]"),
     ];
     for (text, key) in refusals {
-        let case = parse_case(&text, "case.toml", Path::new(".")).unwrap_or_else(|error| panic!("{key}: {error}")).case;
-        match bracket(&case, 100) {
-            Err(BoundError::Case(invalid)) => {
-                assert_eq!(invalid.key, key, "{}", invalid.message);
-                assert!(invalid.message.contains(": "), "no remedy: {}", invalid.message);
-            }
-            other => panic!("{key}: {other:?}"),
-        }
+        assert_refused(bracket(&case(&text), 100), key);
     }
 }

@@ -1,9 +1,8 @@
 //! Claim: a corner that meets rock ahead of it in a point, or over a length that the rock cannot bear, carries no
 //! slope: the factor is that of the plane on which the block stands. Corners that only look so are left alone.
 
-use std::path::Path;
-
-use enmm::model::{Case, Simulation};
+use crate::common::case;
+use enmm::model::Simulation;
 use enmm_stability::corners::{CornerContact, corner_contacts};
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
@@ -21,10 +20,6 @@ fn wedge(joint: &str, ground: f64, laws: &str, more: &str) -> String {
 const FORMULA: f64 = 1.1093;
 const ROUGH: &str = "friction_deg = 30\ncohesion = 20e3";
 const AT_TOE: &str = "[[10, 5], [32, 20.4046]]";
-
-fn case(text: &str) -> Case {
-    enmm_io::parse_case(text, "case.toml", Path::new("")).expect("reads").case
-}
 
 fn factor(text: &str) -> Reduction {
     let options = ReductionOptions { low: Some(0.5), tolerance: 1e-2, ..ReductionOptions::default() };

@@ -1,52 +1,19 @@
 //! The example cases that show claims parse, build and run, and show what their comments say.
 
-use std::path::PathBuf;
-
+use crate::common::claims::advance;
 use crate::common::extent::{Extent, by_extent, extent};
-use crate::common::run_all;
-use enmm::model::{Case, Simulation};
+use crate::common::{case, example, run_all, run_stage, simulation};
+use crate::support::{factor, without};
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
-
-/// Folder of the example cases.
-fn folder() -> PathBuf {
-    crate::common::root().join("examples/cases")
-}
-
-/// The text of `examples/cases/NAME.toml`.
-fn text(name: &str) -> String {
-    let path = folder().join(format!("{name}.toml"));
-    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
-
-fn case(name: &str, text: &str) -> Case {
-    enmm_io::parse_case(text, name, &folder()).unwrap_or_else(|e| panic!("{e}")).case
-}
-
-/// The simulation of `examples/cases/NAME.toml`.
-fn example(name: &str) -> Simulation {
-    Simulation::new(case(name, &text(name))).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// Factor of safety by `enmm fos`.
-fn factor(name: &str, text: &str) -> f64 {
-    let found = factor_of_safety(&case(name, text), &ReductionOptions::default(), &mut |_, _| {});
-    found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
-}
-
-/// `text` without what lies between the first `from` and the next `to`, or the end.
-fn without(text: &str, from: &str, to: &str) -> String {
-    let (before, rest) = text.split_once(from).expect(from);
-    rest.find(to).filter(|_| !to.is_empty()).map_or(before.to_owned(), |end| format!("{before}{}", &rest[end..]))
-}
 
 /// 0.906407 m at 1 s; the rock of 10 GPa rings a little more than that of the claim test: 5e-4.
 #[test]
 fn the_block_slides_as_its_comment_says() {
-    let mut simulation = example("block_on_incline");
-    crate::common::run_stage(&mut simulation);
+    let mut simulation = simulation(&example("block_on_incline"));
+    run_stage(&mut simulation);
     assert!(simulation.next_stage().expect("a stage"));
     let start = simulation.monitor(0).0;
-    crate::common::run_stage(&mut simulation);
+    run_stage(&mut simulation);
     let time = simulation.time() - simulation.state().stage_start;
     let way = (simulation.monitor(0).0 - start).norm();
     assert!((way / (0.906407 * time * time) - 1.0).abs() < 5e-4, "{way}");
@@ -55,7 +22,7 @@ fn the_block_slides_as_its_comment_says() {
 /// 15.97188 mm within 1 %: the bending error of 16 rows and the dents of the supports.
 #[test]
 fn the_beam_sags_as_its_comment_says() {
-    let mut simulation = example("simply_supported_beam");
+    let mut simulation = simulation(&example("simply_supported_beam"));
     run_all(&mut simulation);
     let sag = -simulation.monitor(0).0.y;
     assert!((sag / 15.97188e-3 - 1.0).abs() < 1e-2, "{sag}");
@@ -64,7 +31,7 @@ fn the_beam_sags_as_its_comment_says() {
 /// The middle column topples by metres, the highest stays within centimetres.
 #[test]
 fn the_columns_topple_as_their_comment_says() {
-    let mut simulation = example("goodman_bray");
+    let mut simulation = simulation(&example("goodman_bray"));
     run_all(&mut simulation);
     let [toe, middle, top] = [0, 1, 2].map(|k| simulation.monitor(k).0.norm());
     assert!(toe > 1.0 && middle > 1.0 && top < 0.05, "{toe} {middle} {top}");
@@ -73,20 +40,20 @@ fn the_columns_topple_as_their_comment_says() {
 /// Settlement of the top is that of its weight; it moves no more in the second half of the rest.
 #[test]
 fn long_the_wall_rests_as_its_comment_says() {
-    let mut simulation = example("masonry_wall");
-    crate::common::run_stage(&mut simulation);
+    let mut simulation = simulation(&example("masonry_wall"));
+    run_stage(&mut simulation);
     assert!(simulation.next_stage().expect("a stage"));
     let half = simulation.steps_in(by_extent([0.5, 5.0, 5.0]));
-    crate::common::claims::advance(&mut simulation, half);
+    advance(&mut simulation, half);
     let before = simulation.monitor(0).0;
-    let report = crate::common::claims::advance(&mut simulation, half);
+    let report = advance(&mut simulation, half);
     assert!((simulation.monitor(0).0 - before).norm() < 1e-6 && report.penetration_max < 1e-3, "{report:?}");
 }
 
 /// Its bolts are put in with 350 kN a bar; the rock gives a fraction of a millimetre, and nothing slips.
 #[test]
 fn the_wedge_rests_on_its_bolts() {
-    let mut simulation = example("plane_slide");
+    let mut simulation = simulation(&example("plane_slide"));
     let reports = run_all(&mut simulation);
     assert_eq!(reports.len(), 2);
     assert!(reports.iter().all(|report| report.unbalanced < 1e-5), "{reports:?}");
@@ -94,7 +61,7 @@ fn the_wedge_rests_on_its_bolts() {
 
 /// The comment has the factors of the wedge with and without bolts beside the formula of Hoek and Bray.
 fn wedge_as_its_comment_says(text: &str, case: &str) -> f64 {
-    let found = factor("plane_slide", text);
+    let found = factor(text);
     let row = text.lines().find(|line| line.starts_with(&format!("# {case} "))).expect(case);
     assert!(row.contains(&format!("    {found:.4}")), "{found} instead of {row}");
     found
@@ -102,7 +69,7 @@ fn wedge_as_its_comment_says(text: &str, case: &str) -> f64 {
 
 #[test]
 fn long_the_wedge_has_the_factors_that_its_comment_says() {
-    let wet = text("plane_slide");
+    let wet = example("plane_slide");
     let dry = without(&wet, "\n[water]", "\n[[fix]]");
     let bare = |text: &str| without(text, "[[stage]]\nname = \"bolts\"", "");
     wedge_as_its_comment_says(&wet, "water and bolts");
@@ -116,8 +83,7 @@ fn long_the_wedge_has_the_factors_that_its_comment_says() {
 /// The search begins next to the factor, where all bars yield already; it goes down to where they do not.
 #[test]
 fn bars_of_the_wedge_yield_first_between_two_factors_close_to_each_other() {
-    let found =
-        factor_of_safety(&case("plane_slide", &text("plane_slide")), &ReductionOptions::default(), &mut |_, _| {});
+    let found = factor_of_safety(&case(&example("plane_slide")), &ReductionOptions::default(), &mut |_, _| {});
     let found = found.unwrap_or_else(|e| panic!("{e}"));
     let [whole, yielded] = found.first_yield().expect("bars that yield");
     let factor = found.factor().expect("a factor");
@@ -127,7 +93,7 @@ fn bars_of_the_wedge_yield_first_between_two_factors_close_to_each_other() {
 /// Strength reduction of the columns without dilation stays below limit analysis, which lets joints dilate.
 #[test]
 fn the_columns_bear_less_than_limit_analysis_allows() {
-    let found = factor("goodman_bray", &text("goodman_bray"));
+    let found = factor(&example("goodman_bray"));
     assert!((2.0..2.626).contains(&found), "{found}");
 }
 
@@ -135,12 +101,12 @@ fn the_columns_bear_less_than_limit_analysis_allows() {
 /// 877 m/s. The slope still moves as its base does, for the record has hardly begun.
 #[test]
 fn the_slope_begins_to_shake_as_its_comment_says() {
-    let mut simulation = example("shaken_slope");
-    crate::common::run_stage(&mut simulation);
+    let mut simulation = simulation(&example("shaken_slope"));
+    run_stage(&mut simulation);
     assert!(simulation.next_stage().expect("a stage"));
     let start = [0, 2].map(|k| simulation.monitor(k).0);
     let steps = simulation.steps_in(1.5);
-    crate::common::claims::advance(&mut simulation, steps);
+    advance(&mut simulation, steps);
     let [crest, base] = [(0, start[0]), (2, start[1])].map(|(k, before)| (simulation.monitor(k).0 - before).x);
     assert!(base.abs() > 1e-4 && (crest - base).abs() < 0.5 * base.abs(), "{crest} {base}");
 }
@@ -150,12 +116,12 @@ fn the_slope_begins_to_shake_as_its_comment_says() {
 #[test]
 fn long_the_shaken_slope_slips_as_its_comment_says() {
     for size in by_extent([&[3.0][..], &[3.0, 1.5], &[3.0, 2.0, 1.5, 1.0, 0.75, 0.6]]) {
-        let mesh = text("shaken_slope").replace("size = 1.5", &format!("size = {size:?}"));
-        let mut simulation = Simulation::new(case("shaken_slope", &mesh)).unwrap_or_else(|e| panic!("{e}"));
-        crate::common::run_stage(&mut simulation);
+        let mesh = example("shaken_slope").replace("size = 1.5", &format!("size = {size:?}"));
+        let mut simulation = simulation(&mesh);
+        run_stage(&mut simulation);
         let before = simulation.monitor(0).0;
         assert!(simulation.next_stage().expect("a stage"));
-        crate::common::run_stage(&mut simulation);
+        run_stage(&mut simulation);
         let slip = simulation.monitor(0).0 - before;
         assert!((slip.norm() / 0.038 - 1.0).abs() < 0.025, "mesh of {size} m: {slip:?}");
         assert!((slip.x / -0.031 - 1.0).abs() < 0.025 && (slip.y / -0.022 - 1.0).abs() < 0.025, "{size} m: {slip:?}");

@@ -2,10 +2,8 @@
 //! method that shares no code with the dynamics but the cutting of blocks; where it is clearly lower, dilation explains
 //! that: with joints that dilate by their friction angle both agree.
 
+use crate::common::case;
 use crate::common::extent::by_extent;
-use std::fmt::Write;
-use std::path::Path;
-
 use crate::common::parts::rock;
 use crate::common::random::Random;
 use enmm::model::Case;
@@ -13,6 +11,7 @@ use enmm_stability::limit_analysis::{Factor, bound};
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
+use std::fmt::Write;
 
 /// Width of the brackets.
 const TOLERANCE: f64 = 5e-3;
@@ -148,7 +147,7 @@ impl Slope {
             self.joints,
             rock(young, 2650.0)
         );
-        enmm_io::parse_case(&text, "slope.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}\n{text}")).case
+        case(&text)
     }
 }
 

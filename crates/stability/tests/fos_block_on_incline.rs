@@ -1,8 +1,6 @@
 //! Claim F: strength reduction through the library finds the factor of safety of a block, also below 1, names the block
 //! that fails, and gives the same bits at any thread count.
 
-use std::path::Path;
-
 use crate::common::parts::{rock, turn};
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionError, ReductionOptions, Verdict, factor_of_safety, mechanisms,
@@ -29,7 +27,7 @@ fn case_below(below: &[[f64; 2]], friction: f64, cohesion: f64, more: &str) -> e
         turn(&[[-1.0, -1.0]], -30.0)[0],
         rock(5e9, 2500.0),
     );
-    enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
+    crate::common::case(&text)
 }
 
 fn reduce(case: &enmm::model::Case, threads: usize) -> Reduction {

@@ -1,8 +1,7 @@
 //! Slopes of rock masses by Hoek–Brown: the factor of a published one, bounds about it, and what limit analysis of
 //! rigid blocks says to them.
 
-use std::path::Path;
-
+use crate::common::case;
 use crate::common::extent::by_extent;
 use enmm::model::Case;
 use enmm_stability::limit_analysis::bound;
@@ -24,7 +23,7 @@ fn slope(rows: f64, angle: f64, joints: &str) -> Case {
         10.0 / rows,
         25e3 / 9.81
     );
-    enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
+    case(&text)
 }
 
 /// On elements of a tenth of the height: within 3 % of the published factor, below the upper bound and above the lower

@@ -1,10 +1,9 @@
 //! A fault that was drawn 0.3 mm short of the face raised the factor of safety from 1.09 to 2.6 without a word: a rest
 //! of elastic rock cannot break, however thin it is.
 
-use std::path::Path;
-
+use crate::common::case;
 use enmm::geometry::ends::EndChange;
-use enmm::model::{Case, Simulation};
+use enmm::model::Simulation;
 use enmm_stability::limit_analysis::bound;
 
 /// A wedge on a fault that begins at the face, moved along its normal into the rock by a distance (m).
@@ -18,10 +17,6 @@ fn slope(inside: f64) -> String {
          young = 20e9\npoisson = 0.25\n[joint_law.joints]\nfriction_deg = 35\n[joint_law.fault]\nfriction_deg = 30\n\
          [[fix]]\nedge = [[-15, -8], [40, -8]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 10\n"
     )
-}
-
-fn case(text: &str) -> Case {
-    enmm_io::parse_case(text, "case.toml", Path::new("")).expect("reads").case
 }
 
 fn factor(text: &str) -> f64 {

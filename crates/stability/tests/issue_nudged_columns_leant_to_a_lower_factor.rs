@@ -1,8 +1,7 @@
 //! Issue: pushed by a hundredth of gravity for the time of a fall, two columns leant by 2 % of their height, and `fos`
 //! gave 1.33 for 1.827: what was measured was the push.
 
-use std::path::Path;
-
+use crate::common::case;
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
 use crate::columns::{TWO, columns, toppling};
@@ -10,7 +9,7 @@ use crate::columns::{TWO, columns, toppling};
 /// The factors of two columns of some stiffness (Pa) before and after nudges.
 fn nudged(young: &str) -> [f64; 2] {
     let text = columns(&TWO, "").replace("young = 1e10", &format!("young = {young}"));
-    let case = enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case;
+    let case = case(&text);
     let options = ReductionOptions { low: Some(1.7), high: Some(1.9), tolerance: 1e-2, ..ReductionOptions::default() };
     let reduction = factor_of_safety(&case, &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
     let (before, factor) = reduction.before_nudges.zip(reduction.factor()).expect("a factor before and after nudges");

@@ -1,8 +1,7 @@
 //! Rock with little or no tensile strength never came to rest above a joint, or had half its factor: contacts load the
 //! host of a sliver, so that the sliver itself hangs on its host, and without tensile strength it fell off for ever.
 
-use std::path::Path;
-
+use crate::common::case;
 use crate::common::extent::by_extent;
 use enmm::model::{Case, Simulation};
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
@@ -19,7 +18,7 @@ fn slope(tension: f64, size: f64, angle: f64) -> Case {
          edge = [[50, -8], [50, 24]]\naxes = \"x\"\n[[fix]]\nedge = [[-10, -8], [-10, 0]]\naxes = \"x\"\n[[stage]]\n\
          name = \"rest\"\nkind = \"static\"\nduration_max = 5\n"
     );
-    enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
+    case(&text)
 }
 
 /// With its own strength it rests before it has waited for twice the waves of gravity's ramp, 0.2 s.

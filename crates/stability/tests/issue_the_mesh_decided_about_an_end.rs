@@ -2,9 +2,7 @@
 //! 1.3 m, where "at least 1000" stood beside a note. The length is one of the drawing now, and where an end decides
 //! about the slope, both factors are in a warning.
 
-use std::path::Path;
-
-use enmm::model::Case;
+use crate::common::case;
 use enmm_stability::limit_analysis::{BoundError, Factor, bound, bounds};
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
@@ -24,10 +22,6 @@ fn slope(short: f64, mesh: f64, more: &str) -> String {
 
 /// A second block that can move, on a level joint, so that the slope is not one block.
 const LOOSE: &str = "[[joint]]\npoints = [[30, 18], [40, 18]]\n[[joint]]\npoints = [[30, 18], [30, 20]]\n";
-
-fn case(text: &str) -> Case {
-    enmm_io::parse_case(text, "case.toml", Path::new("")).expect("reads").case
-}
 
 /// tan 30° over the slope of the fault.
 const RIGHT: f64 = 0.923_95;

@@ -1,12 +1,10 @@
 //! Limit analysis gives known factors, keeps its bounds in order, follows the stages of a case, and refuses by name
 //! what it cannot treat. Closed forms of single mechanisms are the verification problems F1 to F7.
 
-use std::path::Path;
-
 use crate::columns::{THREE, TWO, columns, toppling};
-use crate::common::simulation;
+use crate::common::{case, example, simulation};
+use crate::support::assert_refused;
 use enmm::model::Mechanism;
-use enmm_io::{load_case, parse_case};
 use enmm_stability::limit_analysis::{Bound, BoundError, Factor, bound};
 
 fn of_text(text: &str) -> Result<Bound, BoundError> {
@@ -14,8 +12,7 @@ fn of_text(text: &str) -> Result<Bound, BoundError> {
 }
 
 fn of_example(name: &str) -> Bound {
-    let path = crate::common::root().join("examples/cases").join(name);
-    bound(&load_case(&path).expect("a case").case).expect("a bound")
+    bound(&case(&example(name))).expect("a bound")
 }
 
 fn near(factor: Factor, exact: f64) {
@@ -45,7 +42,7 @@ fn jointed(tangent: f64, mirror: f64, more: &str) -> String {
 /// 2.626 is what a linear program that was written apart from this one found for these columns.
 #[test]
 fn columns_of_goodman_and_bray_bear_2_626_when_joints_dilate() {
-    let found = of_example("goodman_bray.toml");
+    let found = of_example("goodman_bray");
     near(found.associated.factor, 2.626);
     near(found.level_tops.factor, 2.626);
     assert!(found.associated.mechanism.len() > 8, "{:?}", found.associated.mechanism);
@@ -54,7 +51,7 @@ fn columns_of_goodman_and_bray_bear_2_626_when_joints_dilate() {
 /// With water and bolts 1.2501 by the formula of Hoek and Bray that the case quotes.
 #[test]
 fn the_plane_slide_of_the_examples_bears_what_its_formula_gives() {
-    let found = of_example("plane_slide.toml");
+    let found = of_example("plane_slide");
     near(found.associated.factor, 1.2501);
     assert_eq!((found.blocks, found.associated.mechanism.len()), ([2, 1], 1));
 }
@@ -63,15 +60,12 @@ fn the_plane_slide_of_the_examples_bears_what_its_formula_gives() {
 #[test]
 fn long_the_fractured_slope_needs_42_75_degrees() {
     if crate::common::extent::extent() >= crate::common::extent::Extent::Full {
-        let found = of_example("fractured_slope.toml");
+        let found = of_example("fractured_slope");
         let expected = 50f64.to_radians().tan() / 42.75f64.to_radians().tan();
         assert!((found.associated.factor.value() / expected - 1.0).abs() < 2e-3, "{found:?}");
         assert!(found.least.value() <= found.level_tops.factor.value());
     } else {
-        near(
-            of_example("block_on_incline.toml").associated.factor,
-            35f64.to_radians().tan() / 30f64.to_radians().tan(),
-        );
+        near(of_example("block_on_incline").associated.factor, 35f64.to_radians().tan() / 30f64.to_radians().tan());
     }
 }
 
@@ -220,13 +214,6 @@ fn what_cannot_be_treated_is_refused_by_its_key() {
         (plain.replace("kind = \"static\"", "kind = \"dynamic\""), "stage[0].kind"),
     ];
     for (text, key) in refusals {
-        let case = parse_case(&text, "case.toml", Path::new(".")).unwrap_or_else(|error| panic!("{key}: {error}")).case;
-        match bound(&case) {
-            Err(BoundError::Case(invalid)) => {
-                assert_eq!(invalid.key, key, "{}", invalid.message);
-                assert!(invalid.message.contains(": "), "no remedy: {}", invalid.message);
-            }
-            other => panic!("{key}: {other:?}"),
-        }
+        assert_refused(bound(&case(&text)), key);
     }
 }

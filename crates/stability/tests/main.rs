@@ -19,4 +19,5 @@ mod limit_analysis;
 mod searches_begin_anywhere;
 mod slips_before_it_holds;
 mod soil_slope;
+mod support;
 mod tutorials;

@@ -1,8 +1,7 @@
 //! Claim: where a search begins, and from which slope at rest a trial goes on, decides about its time and not about the
 //! factor.
 
-use std::path::Path;
-
+use crate::common::case;
 use enmm::model::case::Case;
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
@@ -28,7 +27,7 @@ fn slope(random: &mut Random) -> Case {
          [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration_max = 20.0\n",
         10.0 / 60f64.to_radians().tan()
     );
-    enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
+    case(&text)
 }
 
 fn search(case: &Case, low: Option<f64>, high: Option<f64>) -> Reduction {

@@ -1,8 +1,7 @@
 //! Claim F: the factor of a slope in soil is that of D. V. Griffiths and P. A. Lane (Géotechnique 49, 1999, example 1:
 //! 1.38 to 1.40), whatever the angle of the mesh and the stiffness of the soil. Triangles that lock give 1.6 and more.
 
-use std::path::Path;
-
+use crate::common::case;
 use crate::common::extent::by_extent;
 use enmm::model::case::Case;
 use enmm_stability::limit_analysis::continuum::bracket;
@@ -31,7 +30,7 @@ fn slope([rows, angle]: [f64; 2], stiffness: f64, dilation: f64, (weight, water)
         stiffness * GAMMA * HEIGHT,
         0.05 * GAMMA * HEIGHT,
     );
-    enmm_io::parse_case(&text, "test.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}")).case
+    case(&text)
 }
 
 fn factor_of(case: &Case, options: &ReductionOptions) -> f64 {

@@ -4,44 +4,13 @@ use std::f64::consts::PI;
 use std::path::PathBuf;
 
 use crate::common::extent::{Extent, extent};
-use crate::common::run_all;
-use enmm::model::{Case, Simulation};
+use crate::common::{case, example, examples, run_all, run_stage, simulation};
+use crate::support::{factor, without};
 use enmm_stability::limit_analysis::bound;
-use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
-
-fn folder() -> PathBuf {
-    crate::common::root().join("examples/cases")
-}
-
-/// The text of `examples/cases/NAME.toml`.
-fn text(name: &str) -> String {
-    let path = folder().join(format!("{name}.toml"));
-    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
-
-fn case(text: &str) -> Case {
-    enmm_io::parse_case(text, "case.toml", &folder()).unwrap_or_else(|e| panic!("{e}")).case
-}
-
-fn simulation(text: &str) -> Simulation {
-    Simulation::new(case(text)).unwrap_or_else(|e| panic!("{e}"))
-}
-
-/// Factor of safety by `enmm fos`.
-fn factor(text: &str) -> f64 {
-    let found = factor_of_safety(&case(text), &ReductionOptions::default(), &mut |_, _| {});
-    found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor")
-}
 
 /// Factor by `enmm bound` for joints that dilate by their friction angle.
 fn limit(text: &str) -> f64 {
     bound(&case(text)).unwrap_or_else(|e| panic!("{e}")).associated.factor.value()
-}
-
-/// `text` without what lies between the first `from` and the next `to`.
-fn without(text: &str, from: &str, to: &str) -> String {
-    let (before, rest) = text.split_once(from).expect(from);
-    format!("{before}{}", &rest[rest.find(to).expect(to)..])
 }
 
 /// Factor of the wedge of `road_cut.toml` as one rigid body by the formula of Hoek and Bray, which shares no code with
@@ -88,7 +57,7 @@ fn wedge_as_its_comment_says(all: &str, name: &str, text: &str, exact: f64) -> f
 /// half a minute of computing: the quick form leaves strength reduction out.
 #[test]
 fn long_the_road_cut_has_the_factors_of_hoek_and_bray() {
-    let all = text("road_cut");
+    let all = example("road_cut");
     let [(wet, wet_exact), (dry, dry_exact)] = without_bolts(&all);
     let bolted = hoek_and_bray(3.0, 3.0 * 250e3 / 2.0);
     let rows =
@@ -106,7 +75,7 @@ fn long_the_road_cut_has_the_factors_of_hoek_and_bray() {
 /// crumb at the toe that joined the rock below the fault did: five of these networks had bounds of 4.6 to 7.3.
 #[test]
 fn no_network_of_joints_holds_the_road_cut() {
-    let all = text("road_cut");
+    let all = example("road_cut");
     let exact = hoek_and_bray(3.0, 3.0 * 250e3 / 2.0);
     let (mut slides, seeds) = (0, [1, 20, 106, 107, 185, 331, 447, 602, 792].into_iter().chain(2..8));
     let networks = seeds.map(|seed| {
@@ -124,7 +93,7 @@ fn no_network_of_joints_holds_the_road_cut() {
 /// Both static stages end at rest, and the bolts move the crest by less than a millimetre.
 #[test]
 fn the_road_cut_rests_before_and_after_bolting() {
-    let mut simulation = simulation(&text("road_cut"));
+    let mut simulation = simulation(&example("road_cut"));
     let reports = run_all(&mut simulation);
     assert_eq!(reports.len(), 2);
     assert!(reports.iter().all(|report| report.unbalanced < 1e-5), "{reports:?}");
@@ -135,11 +104,11 @@ fn the_road_cut_rests_before_and_after_bolting() {
 /// rock behind stays.
 #[test]
 fn the_columns_of_the_drawing_topple() {
-    let mut simulation = simulation(&text("toppling"));
-    crate::common::run_stage(&mut simulation);
+    let mut simulation = simulation(&example("toppling"));
+    run_stage(&mut simulation);
     assert!(simulation.monitor(0).0.norm() < 0.01, "the fresh slope rests: {:?}", simulation.monitor(0));
     assert!(simulation.next_stage().expect("a stage"));
-    crate::common::run_stage(&mut simulation);
+    run_stage(&mut simulation);
     let [crest, behind] = [0, 1].map(|k| simulation.monitor(k).0);
     assert!(crest.x < -1.0 && crest.x.abs() > crest.y.abs() && behind.norm() < 0.01, "{crest:?} {behind:?}");
 }
@@ -147,7 +116,7 @@ fn the_columns_of_the_drawing_topple() {
 /// Fresh columns without dilation are weaker than limit analysis allows, which lets joints dilate.
 #[test]
 fn the_fresh_columns_bear_less_than_limit_analysis_allows() {
-    let text = text("toppling");
+    let text = example("toppling");
     let (found, limit) = (factor(&text), limit(&text));
     assert!(found > 1.0 && found < limit, "{found} {limit}");
     assert!(text.contains(&format!("{found:.4}")) && text.contains(&format!("{limit:.4}")), "{found} {limit}");
@@ -156,12 +125,12 @@ fn the_fresh_columns_bear_less_than_limit_analysis_allows() {
 /// No stage of the pit fails, and the floor rises with each stage as rock is taken off.
 #[test]
 fn the_pit_is_dug_in_three_stages() {
-    let mut simulation = simulation(&text("pit"));
-    crate::common::run_stage(&mut simulation);
+    let mut simulation = simulation(&example("pit"));
+    run_stage(&mut simulation);
     let mut rises = vec![simulation.monitor(2).0.y];
     assert!(rises[0].abs() < 5e-5, "nothing moves before the pit: {rises:?}");
     while simulation.next_stage().expect("a stage") {
-        crate::common::run_stage(&mut simulation);
+        run_stage(&mut simulation);
         rises.push(simulation.monitor(2).0.y);
     }
     assert_eq!(rises.len(), 4);
@@ -172,7 +141,7 @@ fn the_pit_is_dug_in_three_stages() {
 /// The wedge on the fault of the finished pit has the factor tan φ / tan ψ of a body on a plane without cohesion.
 #[test]
 fn long_the_finished_pit_has_the_factor_of_its_wedge() {
-    let text = text("pit");
+    let text = example("pit");
     let exact = 44f64.to_radians().tan() / (15.5 / 19.0);
     let limit = limit(&text);
     assert!((limit / exact - 1.0).abs() < 3e-4, "bound {limit} instead of {exact}");
@@ -186,21 +155,21 @@ fn long_the_finished_pit_has_the_factor_of_its_wedge() {
 /// The first line of every example leads editors to the schema.
 #[test]
 fn every_example_names_its_schema() {
-    let files = std::fs::read_dir(folder()).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let files = std::fs::read_dir(examples()).expect("a folder").map(|entry| entry.expect("an entry").path());
     let cases: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     assert!(cases.len() >= 11, "{cases:?}");
     for path in cases {
         let text = std::fs::read_to_string(&path).expect("a case");
         let schema = text.lines().next().and_then(|line| line.strip_prefix("#:schema "));
         let schema = schema.unwrap_or_else(|| panic!("{}: begins without `#:schema`", path.display()));
-        assert!(folder().join(schema).is_file(), "{}: {schema}", path.display());
+        assert!(examples().join(schema).is_file(), "{}: {schema}", path.display());
     }
 }
 
 /// Bridges of the step path: the more brittle, the less they hold together; the rain breaks all of them.
 #[test]
 fn long_the_step_path_has_the_factors_of_its_page_and_breaks_in_the_rain() {
-    let ductile = text("step_path");
+    let ductile = example("step_path");
     let brittle = ductile.replace("tension_energy = 20\n", "").replace("shear_energy = 500", "shear_energy = 1");
     assert!((limit(&ductile) - 1.87).abs() < 0.01, "{}", limit(&ductile));
     if extent() >= Extent::Full {

@@ -7,7 +7,7 @@ use enmm::model::case::Integrator;
 use enmm::model::{Simulation, StepReport};
 use enmm_io as io;
 
-use crate::{Problem, Row, Tolerance, Values};
+use crate::{Problem, Row, Values};
 
 /// Why a problem could not be solved.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,6 +82,6 @@ impl Row {
     /// Residual of the energy ledger, relative to its largest term (claim A4).
     pub fn ledger(report: &StepReport) -> Self {
         Self::new("energy ledger, residual over largest term", "", report.ledger.residual_relative(), 0.0)
-            .within(Tolerance::AtMost(1e-3), "claim A4: the leapfrog's own error is ½(ω dt)² of a mode's energy")
+            .at_most(1e-3, "claim A4: the leapfrog's own error is ½(ω dt)² of a mode's energy")
     }
 }

@@ -51,6 +51,21 @@ impl Row {
         Self { quantity, unit, computed, exact, tolerance, reason: String::new(), origin }
     }
 
+    /// Sets the tolerance as a share of the exact value, and why it is as it is.
+    pub fn relative(self, share: f64, reason: impl Into<String>) -> Self {
+        self.within(Tolerance::Relative(share), reason)
+    }
+
+    /// Sets the tolerance in the row's unit, and why it is as it is.
+    pub fn absolute(self, most: f64, reason: impl Into<String>) -> Self {
+        self.within(Tolerance::Absolute(most), reason)
+    }
+
+    /// Sets the greatest magnitude, and why it is as it is.
+    pub fn at_most(self, most: f64, reason: impl Into<String>) -> Self {
+        self.within(Tolerance::AtMost(most), reason)
+    }
+
     /// Sets the tolerance and why it is as it is.
     pub fn within(self, tolerance: Tolerance, reason: impl Into<String>) -> Self {
         Self { tolerance, reason: reason.into(), ..self }
@@ -91,13 +106,14 @@ pub struct Series {
 }
 
 impl Series {
-    /// Computed points as marks beside the line of an exact function of their first coordinate.
-    pub fn beside(name: &str, exact: impl Fn(f64) -> f64, points: Vec<[f64; 2]>) -> Vec<Self> {
-        let line = points.iter().map(|p| [p[0], exact(p[0])]).collect();
-        vec![
-            Self { name: name.to_owned(), points: line, marks: false },
-            Self { name: "computed".to_owned(), points, marks: true },
-        ]
+    /// Points that a line joins.
+    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Self { name: name.into(), points, marks: false }
+    }
+
+    /// Points as marks.
+    pub fn marks(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Self { name: name.into(), points, marks: true }
     }
 }
 
@@ -112,6 +128,40 @@ pub struct Plot {
     pub logarithmic: [bool; 2],
     /// Lines.
     pub series: Vec<Series>,
+}
+
+impl Plot {
+    /// A plot without lines, on linear axes.
+    pub fn new(title: impl Into<String>, axes: [&str; 2]) -> Self {
+        Self { title: title.into(), axes: axes.map(str::to_owned), ..Self::default() }
+    }
+
+    /// Adds lines and marks.
+    pub fn with(mut self, series: impl IntoIterator<Item = Series>) -> Self {
+        self.series.extend(series);
+        self
+    }
+
+    /// Adds a line.
+    pub fn line(self, name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        self.with([Series::line(name, points)])
+    }
+
+    /// Adds marks.
+    pub fn marks(self, name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        self.with([Series::marks(name, points)])
+    }
+
+    /// Adds computed points as marks beside the line of an exact function of their first coordinate.
+    pub fn beside(self, name: &str, exact: impl Fn(f64) -> f64, points: Vec<[f64; 2]>) -> Self {
+        let line = points.iter().map(|p| [p[0], exact(p[0])]).collect();
+        self.line(name, line).marks("computed", points)
+    }
+
+    /// Sets which axes are logarithmic.
+    pub fn logarithmic(self, logarithmic: [bool; 2]) -> Self {
+        Self { logarithmic, ..self }
+    }
 }
 
 /// Results of a problem.

@@ -17,6 +17,13 @@ pub struct Parameter {
     pub doc: &'static str,
 }
 
+impl Parameter {
+    /// A parameter, its default value between the ends of its range.
+    pub const fn new(name: &'static str, unit: &'static str, default: f64, range: [f64; 2], doc: &'static str) -> Self {
+        Self { name, unit, default, range, doc }
+    }
+}
+
 /// One problem of the manual.
 pub struct Problem {
     /// Name of the problem, such as `C1`.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plot::file_name;
-use crate::{Origin, Outcome, Problem, Row, Solved, Tolerance};
+use crate::{Origin, Outcome, Parameter, Problem, Row, Solved, Tolerance};
 use enmm::model::case::Integrator;
 
 /// Problems with their rows.
@@ -62,6 +62,14 @@ pub struct ParameterRecord {
     pub range: [f64; 2],
     /// Description.
     pub doc: String,
+}
+
+impl ParameterRecord {
+    /// A parameter that has this value, as data.
+    pub fn of(parameter: &Parameter, value: f64) -> Self {
+        let Parameter { name, unit, default, range, doc } = *parameter;
+        Self { name: name.to_owned(), unit: unit.to_owned(), value, default, range, doc: doc.to_owned() }
+    }
 }
 
 /// How the error of a row is judged.
@@ -150,15 +158,7 @@ impl ProblemRecord {
     /// A problem that was solved, as data.
     pub fn of(solved: &Solved) -> Self {
         let Problem { id, title, source, quick, parameters, .. } = solved.job.problem;
-        let value = |name: &str| solved.job.values.get(name);
-        let parameter = |p: &crate::Parameter| ParameterRecord {
-            name: p.name.to_owned(),
-            unit: p.unit.to_owned(),
-            value: value(p.name),
-            default: p.default,
-            range: p.range,
-            doc: p.doc.to_owned(),
-        };
+        let parameter = |p: &Parameter| ParameterRecord::of(p, solved.job.values.get(p.name));
         let nothing = Outcome::default();
         let (outcome, trouble) = match &solved.outcome {
             Ok(outcome) => (outcome, None),

@@ -1,6 +1,7 @@
 //! Claim: `enmm bench` times models of the counts that their names say, which slide without overlap, and its report
 //! accounts for the whole step.
 
+use crate::common::step;
 use enmm::model::Simulation;
 use enmm::model::overlap::Audit;
 use enmm::model::tables::BlockId;
@@ -14,12 +15,6 @@ const SPACING: f64 = 3.7;
 
 fn build(model: Model) -> Simulation {
     model.build().unwrap_or_else(|e| panic!("{model}: {e}"))
-}
-
-fn advance(simulation: &mut Simulation, steps: u64) {
-    for _ in 0..steps {
-        simulation.advance(false).unwrap_or_else(|e| panic!("{e}"));
-    }
 }
 
 /// Free blocks and their elements.
@@ -53,7 +48,7 @@ fn the_same_name_is_the_same_model() {
     assert_eq!(slope_case(500, 4), slope_case(500, 4));
     let [a, b] = [0, 1].map(|_| {
         let mut simulation = build(Model::Slope(500, 4));
-        advance(&mut simulation, 50);
+        step(&mut simulation, 50);
         simulation.state().clone()
     });
     assert!(a == b, "the state after 50 steps");
@@ -68,7 +63,7 @@ fn blocks_slide_down_the_base() {
     let (steps, overlaps) = (simulation.steps_in(0.5), Audit::new(&simulation));
     let mut audited = [0.0f64; 2];
     for _ in 0..steps.div_ceil(5) {
-        advance(&mut simulation, 5);
+        step(&mut simulation, 5);
         let [overlap, unheld, _] = overlaps.worst(&simulation);
         audited = [audited[0].max(overlap), audited[1].max(unheld)];
     }
@@ -131,7 +126,7 @@ fn a_grain_far_below_the_mesh_size_stays_with_its_neighbours() {
     let thickness = &simulation.model().boundary.block_thickness;
     let thinnest = thickness.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(thinnest < 1e-3 * simulation.model().covers.mesh.size, "{thinnest} m");
-    advance(&mut simulation, 30);
+    step(&mut simulation, 30);
     let speed = simulation.state().velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
     assert!(speed < 20.0, "{speed} m/s");
 }

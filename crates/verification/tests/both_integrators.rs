@@ -1,14 +1,14 @@
 //! Claim: every problem that both integrators know passes in its quick form with either.
 
 use enmm::model::case::Integrator;
-use enmm_verification::{Setup, Values, problems::ALL};
+use enmm_verification::{Setup, problems::ALL};
 
 /// Problems of the continuum and of walls at rest; tolerances are the problems' own, the same for both.
 #[test]
 fn beams_columns_and_walls_pass_with_either() {
     for problem in ALL.iter().filter(|p| ["B1", "B2", "B3", "E2"].contains(&p.id)) {
         for integrator in [Integrator::Explicit, Integrator::Implicit] {
-            let mut setup = Setup { values: Values::of(problem), integrator, quick: true, cases: Vec::new() };
+            let mut setup = Setup { integrator, ..Setup::of(problem, true) };
             let outcome = (problem.run)(&mut setup).unwrap_or_else(|e| panic!("{}: {}", problem.id, e.0));
             for row in &outcome.rows {
                 let message = format!("{} is {:e}, exact {:e}", row.quantity, row.computed, row.exact);

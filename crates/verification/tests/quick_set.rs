@@ -74,15 +74,7 @@ fn the_report_has_every_problem_as_the_code_has_it() {
     for (problem, stated) in ALL.iter().zip(&record.problems) {
         let head = (stated.title.as_str(), stated.source.as_str(), stated.quick);
         assert_eq!(head, (problem.title, problem.source, problem.quick), "{}: run `cargo xtask verify`", problem.id);
-        let parameter = |p: &enmm_verification::Parameter| ParameterRecord {
-            name: p.name.into(),
-            unit: p.unit.into(),
-            value: p.default,
-            default: p.default,
-            range: p.range,
-            doc: p.doc.into(),
-        };
-        let parameters: Vec<ParameterRecord> = problem.parameters.iter().map(parameter).collect();
+        let parameters: Vec<_> = problem.parameters.iter().map(|p| ParameterRecord::of(p, p.default)).collect();
         assert_eq!(stated.parameters, parameters, "{}: run `cargo xtask verify`", problem.id);
         assert!(stated.trouble.is_some() || !stated.rows.is_empty(), "{} has no row", problem.id);
     }

@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use crate::common::{ERROR, Fmu, OK};
+use crate::common::{ERROR, Fmu, OK, doubts};
 use enmm_fmi2::*;
 
 #[test]
@@ -57,17 +57,11 @@ fn each_state_allows_its_calls_and_no_others() {
 
 #[test]
 fn energy_from_nowhere_is_a_warning_in_the_log() {
-    let doubts = |fmu: &Fmu| {
-        let instance = fmu.instantiate(&fmu.table.token, &fmu.uri(), 1, true).unwrap();
+    let doubts_of = |fmu: &Fmu| {
+        let instance = fmu.instantiate(true);
         instance.start();
-        let is_doubt = |(_, _, text): &crate::common::Line| text.contains(": the energy residual is ");
-        instance
-            .lines()
-            .into_iter()
-            .filter(is_doubt)
-            .map(|(status, category, _)| (status, category))
-            .collect::<Vec<_>>()
+        doubts(instance.lines())
     };
-    assert_eq!(doubts(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
-    assert_eq!(doubts(&Fmu::boxed()), []);
+    assert_eq!(doubts_of(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
+    assert_eq!(doubts_of(&Fmu::boxed()), []);
 }

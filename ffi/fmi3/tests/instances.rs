@@ -2,7 +2,7 @@
 
 use std::ffi::c_void;
 
-use crate::common::{ERROR, Fmu, OK, Options};
+use crate::common::{BOX, ERROR, Fmu, OK, doubts};
 use enmm_fmi3::*;
 
 /// Every call that takes a value of an instance, by name.
@@ -101,9 +101,8 @@ fn a_getter_that_fails_writes_nothing_and_one_that_works_needs_no_values_before(
 
 #[test]
 fn slips_of_units_are_warnings_of_the_log() {
-    let text = include_str!("common/box.toml").replace("density = 2650.0", "density = 26.5");
-    let fmu = Fmu::of(enmm_io::parse_case(&text, "box.toml", std::path::Path::new(".")).unwrap());
-    let instance = fmu.instantiate(&Options { logging: true, ..Options::default() }).unwrap();
+    let fmu = Fmu::of(&BOX.replace("density = 2650.0", "density = 26.5"));
+    let instance = fmu.instantiate(true, None);
     instance.start();
     let told: Vec<_> = instance.lines().into_iter().filter(|line| line.1 == "logStatusWarning").collect();
     assert!(told.iter().any(|line| line.2.contains("rock.stone.density: is 26.5 kg/m³")), "{told:?}");
@@ -121,19 +120,13 @@ fn time_has_no_value_before_initialization_mode() {
 
 #[test]
 fn energy_from_nowhere_is_a_warning_in_the_log() {
-    let doubts = |fmu: &Fmu| {
-        let instance = fmu.instantiate(&Options { logging: true, ..Options::default() }).unwrap();
+    let doubts_of = |fmu: &Fmu| {
+        let instance = fmu.instantiate(true, None);
         instance.start();
-        let is_doubt = |(_, _, text): &crate::common::Line| text.contains(": the energy residual is ");
-        instance
-            .lines()
-            .into_iter()
-            .filter(is_doubt)
-            .map(|(status, category, _)| (status, category))
-            .collect::<Vec<_>>()
+        doubts(instance.lines())
     };
-    assert_eq!(doubts(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
-    assert_eq!(doubts(&Fmu::boxed()), []);
+    assert_eq!(doubts_of(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
+    assert_eq!(doubts_of(&Fmu::boxed()), []);
 }
 
 #[test]

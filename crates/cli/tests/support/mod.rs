@@ -5,6 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
+/// The example with a wedge on a fault, which bolts hold.
+pub const ROAD_CUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/cases/road_cut.toml");
+
 /// A folder that goes away, with the case in it.
 pub struct Place {
     folder: tempfile::TempDir,
@@ -43,6 +46,14 @@ impl Place {
         Outcome::of(self.command(arguments).output().expect("the program runs"))
     }
 
+    /// Output of the program, which must end with this status.
+    #[track_caller]
+    pub fn answers(&self, status: i32, arguments: &[&str]) -> Outcome {
+        let answer = self.enmm(arguments);
+        assert_eq!(answer.status, Some(status), "{arguments:?}: {answer:?}");
+        answer
+    }
+
     pub fn start(&self, arguments: &[&str]) -> Child {
         let mut command = self.command(arguments);
         command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program runs")
@@ -61,6 +72,11 @@ impl Outcome {
     pub fn of(output: Output) -> Self {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
         Self { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+
+    /// The output as one JSON object.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(self.stdout.trim()).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
     /// Asserts that the output has all `parts`.

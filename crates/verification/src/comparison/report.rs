@@ -5,7 +5,7 @@ use std::fmt::Write;
 use enmm::model::case::Integrator;
 
 use super::{Comparison, Entry, FAILING, Failure, Totals};
-use crate::{Plot, Series};
+use crate::Plot;
 
 impl Comparison {
     /// The comparison as a document; `pictures` are the files of the plots, in their order.
@@ -158,17 +158,15 @@ fn sweep_verdict(sweep: &[Entry]) -> String {
 pub(super) fn plots(entries: &[Entry], failures: &[Failure], sweep: &[Entry]) -> Vec<Plot> {
     let entries: Vec<Entry> = entries.iter().chain(failures.iter().map(|failure| &failure.entry)).cloned().collect();
     let mut plots: Vec<Plot> = costs(&entries);
-    let line = |which: Integrator, name: &str| Series {
-        name: name.into(),
-        points: sweep.iter().filter(|e| e.integrator == which).map(|e| [e.dt, e.error.abs().max(1e-12)]).collect(),
-        marks: true,
+    let errors = |which: Integrator| -> Vec<[f64; 2]> {
+        sweep.iter().filter(|e| e.integrator == which).map(|e| [e.dt, e.error.abs().max(1e-12)]).collect()
     };
-    plots.push(Plot {
-        title: "E1: error of the slip over the step".into(),
-        axes: ["step dt [s]".into(), "relative error [-]".into()],
-        logarithmic: [true; 2],
-        series: vec![line(Integrator::Explicit, "explicit"), line(Integrator::Implicit, "implicit")],
-    });
+    plots.push(
+        Plot::new("E1: error of the slip over the step", ["step dt [s]", "relative error [-]"])
+            .marks("explicit", errors(Integrator::Explicit))
+            .marks("implicit", errors(Integrator::Implicit))
+            .logarithmic([true; 2]),
+    );
     plots
 }
 
@@ -177,21 +175,14 @@ fn costs(entries: &[Entry]) -> Vec<Plot> {
     models(entries)
         .into_iter()
         .map(|model| {
-            let line = |which: Integrator, name: &str| Series {
-                name: name.into(),
-                points: entries
-                    .iter()
-                    .filter(|e| e.model == model && e.integrator == which)
-                    .map(|e| [e.counts[1] as f64, e.cpu])
-                    .collect(),
-                marks: false,
+            let times = |which: Integrator| -> Vec<[f64; 2]> {
+                let entries = entries.iter().filter(|e| e.model == model && e.integrator == which);
+                entries.map(|e| [e.counts[1] as f64, e.cpu]).collect()
             };
-            Plot {
-                title: format!("E1: processor time, {model}"),
-                axes: ["physical covers [-]".into(), "CPU time [s]".into()],
-                logarithmic: [true; 2],
-                series: vec![line(Integrator::Explicit, "explicit"), line(Integrator::Implicit, "implicit")],
-            }
+            Plot::new(format!("E1: processor time, {model}"), ["physical covers [-]", "CPU time [s]"])
+                .line("explicit", times(Integrator::Explicit))
+                .line("implicit", times(Integrator::Implicit))
+                .logarithmic([true; 2])
         })
         .collect()
 }

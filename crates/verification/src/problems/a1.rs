@@ -5,7 +5,7 @@ use enmm::model::tables::ElementId;
 use enmm::model::{Simulation, State};
 
 use crate::random::Random;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "A1",
@@ -13,39 +13,18 @@ pub const PROBLEM: Problem = Problem {
     source: "rigid motion of any size strains nothing, and a uniform strain has the stress of Hooke's law in every \
              element, cut or not; catches wrong weights, gradients and rotations",
     parameters: &[
-        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
-        Parameter { name: "joints", unit: "", default: 12.0, range: [0.0, 200.0], doc: "random joints" },
-        Parameter {
-            name: "traces",
-            unit: "m",
-            default: 4.0,
-            range: [1.0, 20.0],
-            doc: "mean length of the traces of two joint sets",
-        },
-        Parameter { name: "mesh", unit: "m", default: 0.8, range: [0.2, 3.0], doc: "mesh size in a rock of 12 m" },
-        Parameter {
-            name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh"
-        },
-        Parameter {
-            name: "mesh_x",
-            unit: "m",
-            default: 0.3,
-            range: [-100.0, 100.0],
-            doc: "shift of the mesh along \
-        x",
-        },
-        Parameter {
-            name: "mesh_y",
-            unit: "m",
-            default: -0.2,
-            range: [-100.0, 100.0],
-            doc: "shift of the mesh along y",
-        },
-        Parameter { name: "turn_deg", unit: "°", default: 30.0, range: [-360.0, 360.0], doc: "rotation of the rock" },
-        Parameter { name: "shift", unit: "m", default: 8.0, range: [-1e3, 1e3], doc: "translation of the rock" },
-        Parameter { name: "strain", unit: "", default: 2e-3, range: [1e-6, 1e-2], doc: "size of the uniform strain" },
-        Parameter { name: "young", unit: "Pa", default: 3e10, range: [1e6, 1e12], doc: "Young's modulus E" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [-0.9, 0.49], doc: "Poisson's ratio" },
+        Parameter::new("seed", "", 1.0, [0.0, 1e6], "seed of the joints"),
+        Parameter::new("joints", "", 12.0, [0.0, 200.0], "random joints"),
+        Parameter::new("traces", "m", 4.0, [1.0, 20.0], "mean length of the traces of two joint sets"),
+        Parameter::new("mesh", "m", 0.8, [0.2, 3.0], "mesh size in a rock of 12 m"),
+        Parameter::new("mesh_angle_deg", "°", 17.0, [-180.0, 180.0], "turn of the mesh"),
+        Parameter::new("mesh_x", "m", 0.3, [-100.0, 100.0], "shift of the mesh along x"),
+        Parameter::new("mesh_y", "m", -0.2, [-100.0, 100.0], "shift of the mesh along y"),
+        Parameter::new("turn_deg", "°", 30.0, [-360.0, 360.0], "rotation of the rock"),
+        Parameter::new("shift", "m", 8.0, [-1e3, 1e3], "translation of the rock"),
+        Parameter::new("strain", "", 2e-3, [1e-6, 1e-2], "size of the uniform strain"),
+        Parameter::new("young", "Pa", 3e10, [1e6, 1e12], "Young's modulus E"),
+        Parameter::new("poisson", "", 0.25, [-0.9, 0.49], "Poisson's ratio"),
     ],
     quick: true,
     implicit: false,
@@ -86,11 +65,10 @@ fn case(setup: &Setup, seed: u64) -> String {
     let joints: String = (0..setup.get("joints") as usize).map(joint).collect();
     let sets: String = [seed, seed + 100].map(|seed| joint_set(&mut random, setup.get("traces"), seed)).concat();
     format!(
-        "title = \"Patch\"\n[domain]\noutline = {OUTLINE:?}\nextend_ends = 0\n[mesh]\nleast_block = 0\n\
-         size = {:?}\nangle_deg = {:?}\norigin = [{:?}, {:?}]\n\
-         {joints}{sets}[rock.rock]\ndensity = 2600.0\nyoung = {:e}\npoisson = {:?}\n[joint_law.joint]\nfriction_deg = \
-         30.0\n\
-         [[stage]]\nname = \"none\"\nkind = \"dynamic\"\nduration = 1.0\n",
+        "title = \"Patch\"\n[domain]\noutline = {OUTLINE:?}\nextend_ends = 0\n[mesh]\nleast_block = 0\nsize = {:?}\n\
+         angle_deg = {:?}\norigin = [{:?}, {:?}]\n{joints}{sets}[rock.rock]\ndensity = 2600.0\nyoung = {:e}\n\
+         poisson = {:?}\n[joint_law.joint]\nfriction_deg = 30.0\n[[stage]]\nname = \"none\"\nkind = \"dynamic\"\n\
+         duration = 1.0\n",
         setup.get("mesh"),
         setup.get("mesh_angle_deg"),
         setup.get("mesh_x"),
@@ -171,28 +149,21 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let scale = (setup.get("shift").abs().max(12.0) / (100.0 * setup.get("mesh"))).max(1.0);
     let names = ["rigid translation", "rigid rotation", "uniform strain", "uniform strain, then rotation"];
     let row = |n: usize| {
-        Row::new(format!("{}: largest stress error over E", names[n]), "", most[n], 0.0).within(
-            Tolerance::AtMost(1e-12 * scale),
+        Row::new(format!("{}: largest stress error over E", names[n]), "", most[n], 0.0).at_most(
+            1e-12 * scale,
             "rounding of displacements U is εU, of strain a few times εU/h, of which 1e-12 is far above to U = 100 h; \
              beyond, in proportion to U/h",
         )
     };
     let mut rows: Vec<Row> = (0..4).map(row).collect();
     rows.push(
-        Row::new("area of all elements, where it is farthest from that of the rock", "m²", farthest, area()).within(
-            Tolerance::Absolute(1e-3),
-            "corners are snapped to a grid and so move by at most 1.5e-5 m, along 40 m of outline",
-        ),
+        Row::new("area of all elements, where it is farthest from that of the rock", "m²", farthest, area())
+            .absolute(1e-3, "corners are snapped to a grid and so move by at most 1.5e-5 m, along 40 m of outline"),
     );
     let counted =
         ["elements", "of which cut", "mesh nodes with several covers", "sides of joints that end inside a block"];
     rows.extend(counted.into_iter().zip(counts).map(|(name, count)| Row::new(name, "", count as f64, count as f64)));
-    let line = |n: usize| Series { name: names[n].into(), points: series[n].clone(), marks: true };
-    let plot = Plot {
-        title: "Largest stress error of random patches".into(),
-        axes: ["seed".into(), "error over E".into()],
-        series: (0..4).map(line).collect(),
-        ..Plot::default()
-    };
+    let line = |n: usize| Series::marks(names[n], series[n].clone());
+    let plot = Plot::new("Largest stress error of random patches", ["seed", "error over E"]).with((0..4).map(line));
     Ok(Outcome { rows, plots: vec![plot] })
 }

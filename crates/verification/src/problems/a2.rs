@@ -5,31 +5,22 @@ use enmm::model::StepReport;
 use enmm::model::tables::BlockId;
 
 use crate::random::Random;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "A2",
     title: "Free fall",
     source: "blocks that touch nothing fall by ½gt² without stress or spin; catches wrong mass of cut covers and \
-             gravity \
-             that strains",
+             gravity that strains",
     parameters: &[
-        Parameter { name: "g", unit: "m/s²", default: 9.81, range: [0.01, 100.0], doc: "gravity" },
-        Parameter { name: "direction_deg", unit: "°", default: -90.0, range: [-360.0, 360.0], doc: "its direction" },
-        Parameter { name: "t", unit: "s", default: 2.0, range: [0.05, 5.0], doc: "time of the fall" },
-        Parameter {
-            name: "mesh",
-            unit: "m",
-            default: 0.7,
-            range: [0.3, 2.0],
-            doc: "mesh size beside blocks of 1 to 5 m",
-        },
-        Parameter {
-            name: "mesh_angle_deg", unit: "°", default: 17.0, range: [-180.0, 180.0], doc: "turn of the mesh"
-        },
-        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the shapes" },
-        Parameter { name: "young", unit: "Pa", default: 2e9, range: [1e6, 1e11], doc: "Young's modulus" },
-        Parameter { name: "damping", unit: "", default: 0.1, range: [0.0, 1.0], doc: "damping ratio of the blocks" },
+        Parameter::new("g", "m/s²", 9.81, [0.01, 100.0], "gravity"),
+        Parameter::new("direction_deg", "°", -90.0, [-360.0, 360.0], "its direction"),
+        Parameter::new("t", "s", 2.0, [0.05, 5.0], "time of the fall"),
+        Parameter::new("mesh", "m", 0.7, [0.3, 2.0], "mesh size beside blocks of 1 to 5 m"),
+        Parameter::new("mesh_angle_deg", "°", 17.0, [-180.0, 180.0], "turn of the mesh"),
+        Parameter::new("seed", "", 1.0, [0.0, 1e6], "seed of the shapes"),
+        Parameter::new("young", "Pa", 2e9, [1e6, 1e11], "Young's modulus"),
+        Parameter::new("damping", "", 0.1, [0.0, 1.0], "damping ratio of the blocks"),
     ],
     quick: true,
     implicit: true,
@@ -58,11 +49,10 @@ fn case(setup: &Setup) -> String {
     let g = setup.get("g");
     format!(
         "title = \"Fall\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.5], [3.0, 4.0], [-1.0, 3.0]]\nislands = [{}]\n\
-         [mesh]\n\
-         size = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\npoints = [[1.0, 1.0], \
-         [3.0, 3.0]]\n\
-         [gravity]\nx = {:e}\ny = {:e}\n[rock.rock]\ndensity = 2400.0\nyoung = {:e}\npoisson = 0.25\n[[stage]]\n\
-         name = \"fall\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = {:?}\n",
+         [mesh]\nsize = {:?}\nangle_deg = {:?}\n[joint_law.joint]\nfriction_deg = 20.0\n[[joint]]\n\
+         points = [[1.0, 1.0], [3.0, 3.0]]\n[gravity]\nx = {:e}\ny = {:e}\n[rock.rock]\ndensity = 2400.0\n\
+         young = {:e}\npoisson = 0.25\n[[stage]]\nname = \"fall\"\nkind = \"dynamic\"\nduration = 1e3\n\
+         damping = {:?}\n",
         islands.join(", "),
         setup.get("mesh"),
         setup.get("mesh_angle_deg"),
@@ -96,17 +86,16 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let spin = slope.covers.blocks().map(spin).fold(0.0, f64::max);
     let rows = vec![
         Row::new("fall of the first cover", "m", state.displacement[0].norm(), fall.norm())
-            .within(Tolerance::Relative(1e-11), "exact under constant acceleration; n steps round by n·ε at most"),
-        Row::new("largest deviation of any cover over the fall", "", off / fall.norm(), 0.0)
-            .within(Tolerance::AtMost(1e-11), "the same"),
-        Row::new("largest stress over E", "", stress / setup.get("young"), 0.0).within(
-            Tolerance::AtMost(1e-12 * (fall.norm() / (100.0 * setup.get("mesh"))).max(1.0)),
+            .relative(1e-11, "exact under constant acceleration; n steps round by n·ε at most"),
+        Row::new("largest deviation of any cover over the fall", "", off / fall.norm(), 0.0).at_most(1e-11, "the same"),
+        Row::new("largest stress over E", "", stress / setup.get("young"), 0.0).at_most(
+            1e-12 * (fall.norm() / (100.0 * setup.get("mesh"))).max(1.0),
             "rounding of a fall U is εU, of the strain εU/h: 1e-12 up to U = 100 h, beyond in proportion",
         ),
         Row::new("largest spin of a block over its speed", "1/m", spin / (g * t), 0.0)
-            .within(Tolerance::AtMost(1e-11), "rounding of velocities over the size of a block"),
+            .at_most(1e-11, "rounding of velocities over the size of a block"),
         Row::new("blocks", "", slope.covers.block_count() as f64, 4.0)
-            .within(Tolerance::Absolute(0.0), "three islands and a rock that its joint does not part"),
+            .absolute(0.0, "three islands and a rock that its joint does not part"),
         Row {
             tolerance: Tolerance::AtMost(0.5 / (steps as f64).powi(2) + 1e-12),
             reason: LEDGER.into(),
@@ -114,14 +103,6 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         },
     ];
     let exact = (0..=60).map(|k| t * f64::from(k) / 60.0).map(|t| [t, 0.5 * g * t * t]).collect();
-    let plot = Plot {
-        title: "Fall of a cover".into(),
-        axes: ["time [s]".into(), "fall [m]".into()],
-        series: vec![
-            Series { name: "exact".into(), points: exact, marks: false },
-            Series { name: "computed".into(), points, marks: true },
-        ],
-        ..Plot::default()
-    };
+    let plot = Plot::new("Fall of a cover", ["time [s]", "fall [m]"]).line("exact", exact).marks("computed", points);
     Ok(Outcome { rows, plots: vec![plot] })
 }

@@ -5,7 +5,7 @@ use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, EdgeId};
 
 use crate::random::Random;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "A3",
@@ -14,21 +14,21 @@ pub const PROBLEM: Problem = Problem {
              momentum, \
              kinetic energy and area; catches wrong inertia of cut covers and stress rates that are not objective",
     parameters: &[
-        Parameter { name: "w0", unit: "rad/s", default: 0.8, range: [0.05, 20.0], doc: "angular velocity" },
-        Parameter { name: "turns", unit: "", default: 10.0, range: [0.25, 20.0], doc: "turns" },
-        Parameter { name: "corners", unit: "", default: 5.0, range: [3.0, 12.0], doc: "corners of the block" },
-        Parameter { name: "size", unit: "m", default: 1.2, range: [0.1, 20.0], doc: "radius of the block" },
-        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of its shape" },
-        Parameter {
-            name: "crack",
-            unit: "",
-            default: 0.0,
-            range: [0.0, 1.2],
-            doc: "depth over radius of a joint that ends inside the block; none where it is 0",
-        },
-        Parameter { name: "mesh", unit: "", default: 0.4, range: [0.1, 3.0], doc: "mesh size over radius" },
-        Parameter { name: "young", unit: "Pa", default: 2e10, range: [1e8, 1e12], doc: "Young's modulus" },
-        Parameter { name: "density", unit: "kg/m³", default: 2500.0, range: [100.0, 1e4], doc: "density" },
+        Parameter::new("w0", "rad/s", 0.8, [0.05, 20.0], "angular velocity"),
+        Parameter::new("turns", "", 10.0, [0.25, 20.0], "turns"),
+        Parameter::new("corners", "", 5.0, [3.0, 12.0], "corners of the block"),
+        Parameter::new("size", "m", 1.2, [0.1, 20.0], "radius of the block"),
+        Parameter::new("seed", "", 1.0, [0.0, 1e6], "seed of its shape"),
+        Parameter::new(
+            "crack",
+            "",
+            0.0,
+            [0.0, 1.2],
+            "depth over radius of a joint that ends inside the block; none where it is 0",
+        ),
+        Parameter::new("mesh", "", 0.4, [0.1, 3.0], "mesh size over radius"),
+        Parameter::new("young", "Pa", 2e10, [1e8, 1e12], "Young's modulus"),
+        Parameter::new("density", "kg/m³", 2500.0, [100.0, 1e4], "density"),
     ],
     quick: true,
     implicit: false,
@@ -92,13 +92,11 @@ fn case(setup: &Setup, outline: &[[f64; 2]]) -> String {
     let (w0, density) = (setup.get("w0"), setup.get("density"));
     let (_, centre, polar) = moments(outline);
     format!(
-        "title = \"Spin\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = {:e}\nangle_deg = 11.0\norigin = [0.1, \
-         0.2]\n\
-         {}[gravity]\ny = 0.0\n[rock.rock]\ndensity = {density:e}\nyoung = {:e}\npoisson = 0.25\n[[load]]\nkind = \
-         \"block\"\n\
-         point = [{:?}, {:?}]\nmoment = {:e}\ntable = [[0.0, 0.0], [{half:e}, 1.0], [{PUSH:e}, 0.0]]\n[solver]\n\
-         communication_step = {half:e}\n[[stage]]\nname = \"spin\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = \
-         0.1\n",
+        "title = \"Spin\"\n[domain]\noutline = {outline:?}\n[mesh]\nsize = {:e}\nangle_deg = 11.0\n\
+         origin = [0.1, 0.2]\n{}[gravity]\ny = 0.0\n[rock.rock]\ndensity = {density:e}\nyoung = {:e}\npoisson = 0.25\n\
+         [[load]]\nkind = \"block\"\npoint = [{:?}, {:?}]\nmoment = {:e}\n\
+         table = [[0.0, 0.0], [{half:e}, 1.0], [{PUSH:e}, 0.0]]\n[solver]\ncommunication_step = {half:e}\n[[stage]]\n\
+         name = \"spin\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.1\n",
         setup.get("mesh") * setup.get("size"),
         crack(setup),
         setup.get("young"),
@@ -147,11 +145,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         ("speed of the centroid over that of the rim", last.1.norm() / (w0 * size)),
     ] {
         let row = Row::new(format!("{name}, after {turns} turns"), "", value, 0.0);
-        rows.push(row.within(Tolerance::AtMost(5e-10), ROUNDING));
+        rows.push(row.at_most(5e-10, ROUNDING));
     }
     for (name, value) in ["kinetic energy", "area"].into_iter().zip(drift) {
         let row = Row::new(format!("{name} after {turns} turns over that before"), "", value, 1.0);
-        rows.push(row.within(Tolerance::Relative(most), REASON));
+        rows.push(row.relative(most, REASON));
     }
     rows.push(Row::ledger(&simulation.advance(true)?));
     Ok(Outcome { rows, plots: vec![plot(&curve, turns)] })
@@ -167,30 +165,24 @@ fn limit(setup: &Setup) -> f64 {
 fn rows(setup: &Setup, inertia: f64, [momentum, spin, period, kinetic]: [f64; 4]) -> Vec<Row> {
     let (w0, most) = (setup.get("w0"), limit(setup));
     let energy = Row::new("kinetic energy after the push", "J/m", kinetic, 0.5 * inertia * w0 * w0);
-    let mut rows = vec![energy.within(Tolerance::Relative(most), REASON)];
+    let mut rows = vec![energy.relative(most, REASON)];
     for (name, unit, found, exact) in [
         ("angular momentum after the push", "kg·m²/s", momentum, inertia * w0),
         ("spin after the push, L/J of the true polygon", "rad/s", spin, w0),
         ("period", "s", period, std::f64::consts::TAU / w0),
     ] {
-        rows.push(Row::new(name, unit, found, exact).within(Tolerance::Relative(most), REASON));
+        rows.push(Row::new(name, unit, found, exact).relative(most, REASON));
     }
     rows
 }
 
 fn plot(curve: &[[f64; 3]], turns: f64) -> Plot {
-    let line = |k: usize, name: &str| Series {
-        name: name.into(),
-        points: curve.iter().map(|p| [p[0], p[k]]).collect(),
-        marks: false,
-    };
-    let exact = Series { name: "exact".into(), points: vec![[0.0, 0.0], [turns, 0.0]], marks: false };
-    Plot {
-        title: "Drift of a free spin".into(),
-        axes: ["turns".into(), "change relative to the start".into()],
-        series: vec![exact, line(1, "angular momentum"), line(2, "kinetic energy")],
-        ..Plot::default()
-    }
+    let line = |k: usize| curve.iter().map(|p| [p[0], p[k]]).collect::<Vec<_>>();
+    let exact = vec![[0.0, 0.0], [turns, 0.0]];
+    Plot::new("Drift of a free spin", ["turns", "change relative to the start"])
+        .line("exact", exact)
+        .line("angular momentum", line(1))
+        .line("kinetic energy", line(2))
 }
 
 #[cfg(test)]

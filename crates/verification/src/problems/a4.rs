@@ -3,34 +3,31 @@
 use enmm::model::{Simulation, StepReport};
 
 use crate::parts::{dynamic, rock};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, wider_open};
 
 pub const PROBLEM: Problem = Problem {
     id: "A4",
     title: "Momentum and energy of a set of contacts",
-    source: "contacts push in opposite pairs at one point, so that linear and angular momentum keep to round-off, \
-             and \
+    source: "contacts push in opposite pairs at one point, so that linear and angular momentum keep to round-off, and \
              every joule is accounted for; catches wrong action and reaction, and energy from nowhere",
     parameters: &[
-        Parameter { name: "seed", unit: "", default: 1.0, range: [0.0, 1e6], doc: "seed of the joints" },
-        Parameter { name: "spacing", unit: "m", default: 0.8, range: [0.4, 2.0], doc: "spacing of the joints" },
-        Parameter {
-            name: "friction_deg", unit: "°", default: 30.0, range: [0.0, 70.0], doc: "friction of the joints"
-        },
-        Parameter { name: "damping", unit: "", default: 0.1, range: [0.0, 1.0], doc: "damping ratio of the blocks" },
-        Parameter { name: "speed", unit: "m/s", default: 3.0, range: [0.1, 5.0], doc: "speed of the projectiles" },
-        Parameter { name: "spin", unit: "rad/s", default: 1.0, range: [-5.0, 5.0], doc: "spin of the first" },
-        Parameter { name: "mesh", unit: "m", default: 0.7, range: [0.25, 1.5], doc: "mesh size" },
-        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
-        Parameter { name: "steps", unit: "", default: 3000.0, range: [200.0, 40000.0], doc: "steps" },
-        Parameter {
-            name: "dt_max",
-            unit: "s",
-            default: 1.0,
-            range: [1e-7, 1.0],
-            doc: "greatest step; small without damping, for then waves of the shortest length stay, whose energy the \
-                  ledger knows to ½(ω dt)² only",
-        },
+        Parameter::new("seed", "", 1.0, [0.0, 1e6], "seed of the joints"),
+        Parameter::new("spacing", "m", 0.8, [0.4, 2.0], "spacing of the joints"),
+        Parameter::new("friction_deg", "°", 30.0, [0.0, 70.0], "friction of the joints"),
+        Parameter::new("damping", "", 0.1, [0.0, 1.0], "damping ratio of the blocks"),
+        Parameter::new("speed", "m/s", 3.0, [0.1, 5.0], "speed of the projectiles"),
+        Parameter::new("spin", "rad/s", 1.0, [-5.0, 5.0], "spin of the first"),
+        Parameter::new("mesh", "m", 0.7, [0.25, 1.5], "mesh size"),
+        Parameter::new("young", "Pa", 1e9, [1e8, 1e11], "Young's modulus"),
+        Parameter::new("steps", "", 3000.0, [200.0, 40000.0], "steps"),
+        Parameter::new(
+            "dt_max",
+            "s",
+            1.0,
+            [1e-7, 1.0],
+            "greatest step; small without damping, for then waves of the shortest length stay, whose energy the ledger \
+             knows to ½(ω dt)² only",
+        ),
     ],
     quick: true,
     implicit: false,
@@ -44,16 +41,12 @@ fn case(setup: &Setup) -> String {
     format!(
         "title = \"Collision\"\n[domain]\noutline = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]\n\
          islands = [[[-2.0, 0.4], [-0.2, 1.1], [-1.6, 2.3]], [[4.3, 1.2], [5.4, 0.8], [5.9, 2.2], [4.6, 2.4]]]\n\
-         [mesh]\n\
-         size = {:?}\nangle_deg = 13.0\n[[joint_set]]\nangle_deg = 10.0\nspacing = {:?}\nseed = {seed}\n[[joint_set]]\n\
-         angle_deg = 85.0\nangle_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\nfriction_deg = {:?}\n\
-         [gravity]\n\
-         y = 0.0\n[rock.rock]\ndensity = 2500.0\nyoung = {:e}\npoisson = 0.25\n[[initial_velocity]]\nblock = \
-         [-1.2, 1.2]\n\
-         velocity = [{:?}, 0.5]\nangular_velocity = {:?}\n[[initial_velocity]]\nblock = [5.0, 1.6]\nvelocity = \
-         [{:?}, 0.3]\n\
-         angular_velocity = -2.0\n[[stage]]\nname = \"collide\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = \
-         {:?}\n[solver]\ndt_max = {:e}\n",
+         [mesh]\nsize = {:?}\nangle_deg = 13.0\n[[joint_set]]\nangle_deg = 10.0\nspacing = {:?}\nseed = {seed}\n\
+         [[joint_set]]\nangle_deg = 85.0\nangle_sd_deg = 5.0\nspacing = {:?}\nseed = {seed}\n[joint_law.joint]\n\
+         friction_deg = {:?}\n[gravity]\ny = 0.0\n[rock.rock]\ndensity = 2500.0\nyoung = {:e}\npoisson = 0.25\n\
+         [[initial_velocity]]\nblock = [-1.2, 1.2]\nvelocity = [{:?}, 0.5]\nangular_velocity = {:?}\n\
+         [[initial_velocity]]\nblock = [5.0, 1.6]\nvelocity = [{:?}, 0.3]\nangular_velocity = -2.0\n[[stage]]\n\
+         name = \"collide\"\nkind = \"dynamic\"\nduration = 1e3\ndamping = {:?}\n[solver]\ndt_max = {:e}\n",
         get("mesh"),
         get("spacing"),
         1.25 * get("spacing"),
@@ -122,7 +115,7 @@ fn crack(setup: &mut Setup) -> Result<Row, Trouble> {
     let impulse = force * steps as f64 * simulation.model().dt;
     let found = simulation.momentum().0.norm() / impulse;
     let row = Row::new("momentum of a block whose crack is pushed shut, over the impulse of a force", "", found, 0.0);
-    Ok(row.within(Tolerance::AtMost(1e-11), "400 opposite impulses round to √400·2e-16 of them"))
+    Ok(row.at_most(1e-11, "400 opposite impulses round to √400·2e-16 of them"))
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
@@ -131,9 +124,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let steps = if setup.quick { setup.get("steps").min(1000.0) } else { setup.get("steps") };
     let mut curve = Curve::new();
     let (worst, report) = collide(&mut simulation, steps as u64, &mut curve)?;
-    let reason = "impulses come in opposite pairs at one point: rounding alone, some √(3e5)·2e-16 over the run; \
-                  1e-11";
-    let within = |row: Row| row.within(Tolerance::AtMost(1e-11), reason);
+    let reason = "impulses come in opposite pairs at one point: rounding alone, some √(3e5)·2e-16 over the run; 1e-11";
+    let within = |row: Row| row.at_most(1e-11, reason);
     let counters = &simulation.state().counters;
     let judged = counters.contacts_solved as f64;
     if counters.penetration_max < LEAST {
@@ -149,16 +141,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         Row::ledger(&report),
         crack(setup)?,
     ];
-    let line = |k: usize, name: &str| Series {
-        name: name.into(),
-        points: curve.iter().map(|p| [p[0], p[k]]).collect(),
-        marks: false,
-    };
-    let plot = Plot {
-        title: "Energies of a collision".into(),
-        axes: ["time [s]".into(), "energy [J/m]".into()],
-        series: vec![line(1, "kinetic"), line(2, "stored"), line(3, "friction"), line(4, "residual (exact: 0)")],
-        ..Plot::default()
-    };
+    let line = |k: usize| curve.iter().map(|p| [p[0], p[k]]).collect::<Vec<_>>();
+    let plot = Plot::new("Energies of a collision", ["time [s]", "energy [J/m]"])
+        .line("kinetic", line(1))
+        .line("stored", line(2))
+        .line("friction", line(3))
+        .line("residual (exact: 0)", line(4));
     Ok(Outcome { rows, plots: vec![plot] })
 }

@@ -4,7 +4,7 @@ use enmm::model::Simulation;
 
 use super::beam::{Beam, Plane};
 use super::block::G;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B1",
@@ -13,13 +13,13 @@ pub const PROBLEM: Problem = Problem {
              bending and shear. \
              Catches wrong elasticity, plane stress taken for plane strain, and locking of linear covers",
     parameters: &[
-        Parameter { name: "length", unit: "m", default: 10.0, range: [4.0, 20.0], doc: "span" },
-        Parameter { name: "depth", unit: "m", default: 1.0, range: [0.5, 1.25], doc: "depth of the beam" },
-        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
-        Parameter { name: "q", unit: "Pa", default: 1e4, range: [10.0, 1e5], doc: "uniform load on the top" },
-        Parameter { name: "force", unit: "N/m", default: 1e5, range: [10.0, 1e6], doc: "force in the middle" },
-        Parameter { name: "rows", unit: "", default: 16.0, range: [8.0, 24.0], doc: "rows of the finest mesh" },
+        Parameter::new("length", "m", 10.0, [4.0, 20.0], "span"),
+        Parameter::new("depth", "m", 1.0, [0.5, 1.25], "depth of the beam"),
+        Parameter::new("young", "Pa", 1e9, [1e8, 1e11], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.4], "Poisson's ratio"),
+        Parameter::new("q", "Pa", 1e4, [10.0, 1e5], "uniform load on the top"),
+        Parameter::new("force", "N/m", 1e5, [10.0, 1e6], "force in the middle"),
+        Parameter::new("rows", "", 16.0, [8.0, 24.0], "rows of the finest mesh"),
     ],
     quick: true,
     implicit: true,
@@ -176,36 +176,28 @@ fn judge(outcome: &mut Outcome, setup: &Setup, beam: &Beam, load: Load, name: &s
     // the cube otherwise.
     let local = if load == Load::Point { 4e-3 * (10.0 * beam.depth / beam.length).powi(3) } else { 0.0 };
     let last = results.len() - 1;
+    let row = Row::new(format!("{name}: deflection over the supports"), "m", results[last].sag[0], exact[0]);
+    outcome.rows.push(row.relative(bending + 6e-3 + local, "below 2/rows² of linear covers; the supports' dents"));
     outcome.rows.push(
-        Row::new(format!("{name}: deflection over the supports"), "m", results[last].sag[0], exact[0])
-            .within(Tolerance::Relative(bending + 6e-3 + local), "below 2/rows² of linear covers; the supports' dents"),
+        Row::new(format!("{name}: sag between points L/10 inside"), "m", sag(last), exact[1])
+            .relative(bending + local, "linear covers bend like constant-strain triangles: below 2/rows²"),
     );
-    outcome.rows.push(Row::new(format!("{name}: sag between points L/10 inside"), "m", sag(last), exact[1]).within(
-        Tolerance::Relative(bending + local),
-        "linear covers bend like constant-strain triangles: below 2/rows²",
-    ));
     let limit = sag(last) + (sag(last) - sag(last - 1)) / 3.0;
     let left = 1e-3 + local + 4.0 * (2.1 / (finest * finest)).powi(2);
-    outcome.rows.push(
-        Row::new(format!("{name}: sag, extrapolated"), "m", limit, exact[1])
-            .within(Tolerance::Relative(left.max(2e-3)), "Richardson's rule leaves the square of the finest error"),
-    );
+    let row = Row::new(format!("{name}: sag, extrapolated"), "m", limit, exact[1]);
+    outcome.rows.push(row.relative(left.max(2e-3), "Richardson's rule leaves the square of the finest error"));
     let order = ((sag(last - 1) / exact[1] - 1.0) / (sag(last) / exact[1] - 1.0)).log2();
     let width = if load == Load::Point { 0.7 } else { 0.4 };
-    outcome.rows.push(
-        Row::new(format!("{name}: order of the sag in h"), "", order, 2.0)
-            .within(Tolerance::Absolute(width), "h²; the mesh does not fit the beam; a force is a singular load"),
-    );
+    let row = Row::new(format!("{name}: order of the sag in h"), "", order, 2.0);
+    outcome.rows.push(row.absolute(width, "h²; the mesh does not fit the beam; a force is a singular load"));
     if load != Load::Point {
         let softer = (0..results.len()).filter(|k| sag(*k) > exact[1]).count();
         let reason = "covers allow fewer displacements than the rock has, which makes a beam stiffer";
         let row = Row::new(format!("{name}: meshes of 3 that sag by more than the rock"), "", softer as f64, 0.0);
-        outcome.rows.push(row.within(Tolerance::AtMost(0.0), reason));
+        outcome.rows.push(row.at_most(0.0, reason));
         let order = (results[last - 1].stress / results[last].stress).log2();
-        outcome.rows.push(
-            Row::new(format!("{name}: order of stress in h"), "", order, 1.0)
-                .within(Tolerance::Absolute(0.35), "stress is uniform in an element: error h"),
-        );
+        let row = Row::new(format!("{name}: order of stress in h"), "", order, 1.0);
+        outcome.rows.push(row.absolute(0.35, "stress is uniform in an element: error h"));
     }
 }
 
@@ -217,10 +209,8 @@ fn plots(setup: &Setup, curves: &[(String, Vec<Result>)], rows: [f64; 3]) -> Vec
         (result.sag[1] / exact(setup, &beam(setup, plane(name)), load)[1] - 1.0).abs()
     };
     let size = |k: usize| setup.get("depth") / rows[k];
-    let line = |label: String, value: &dyn Fn(usize) -> f64| Series {
-        name: label,
-        points: (0..3).map(|k| [size(k), value(k)]).collect(),
-        marks: false,
+    let line = |label: String, value: &dyn Fn(usize) -> f64| {
+        Series::line(label, (0..3).map(|k| [size(k), value(k)]).collect())
     };
     let mut series: Vec<Series> =
         curves.iter().map(|(name, results)| line(name.clone(), &|k| error(name, &results[k]))).collect();
@@ -228,14 +218,9 @@ fn plots(setup: &Setup, curves: &[(String, Vec<Result>)], rows: [f64; 3]) -> Vec
     let stress = curves.iter().filter(|(name, _)| !name.starts_with(Load::Point.name()));
     let mut stresses: Vec<Series> = stress.map(|(name, results)| line(name.clone(), &|k| results[k].stress)).collect();
     stresses.push(line("h".into(), &|k| size(k) / setup.get("depth")));
-    let plot = |title: &str, axis: &str, series| Plot {
-        title: title.into(),
-        axes: ["mesh size h [m]".into(), axis.into()],
-        logarithmic: [true, true],
-        series,
-    };
+    let plot = |title: &str, axis: &str| Plot::new(title, ["mesh size h [m]", axis]).logarithmic([true; 2]);
     vec![
-        plot("B1: error of the sag over the mesh size", "relative error [-]", series),
-        plot("B1: error of stress xx over the mesh size", "rms error / greatest stress [-]", stresses),
+        plot("B1: error of the sag over the mesh size", "relative error [-]").with(series),
+        plot("B1: error of stress xx over the mesh size", "rms error / greatest stress [-]").with(stresses),
     ]
 }

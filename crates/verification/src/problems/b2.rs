@@ -6,7 +6,7 @@ use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
 use super::beam::{Beam, Plane};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B2",
@@ -14,18 +14,18 @@ pub const PROBLEM: Problem = Problem {
     source: "Rayleigh–Lamb equation (simply supported), slender beam with shear and rotary inertia (cantilever), bar \
              with lateral inertia (free–free). Catches wrong mass, numerical damping and period error",
     parameters: &[
-        Parameter { name: "length", unit: "m", default: 10.0, range: [5.0, 20.0], doc: "length" },
-        Parameter { name: "depth", unit: "m", default: 1.0, range: [0.5, 1.25], doc: "depth" },
-        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
-        Parameter { name: "density", unit: "kg/m³", default: 2500.0, range: [500.0, 8000.0], doc: "density" },
-        Parameter {
-            name: "rows",
-            unit: "",
-            default: 8.0,
-            range: [4.0, 16.0],
-            doc: "rows of the finest mesh; twice that where both ends are supported",
-        },
+        Parameter::new("length", "m", 10.0, [5.0, 20.0], "length"),
+        Parameter::new("depth", "m", 1.0, [0.5, 1.25], "depth"),
+        Parameter::new("young", "Pa", 1e9, [1e8, 1e11], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.4], "Poisson's ratio"),
+        Parameter::new("density", "kg/m³", 2500.0, [500.0, 8000.0], "density"),
+        Parameter::new(
+            "rows",
+            "",
+            8.0,
+            [4.0, 16.0],
+            "rows of the finest mesh; twice that where both ends are supported",
+        ),
     ],
     quick: true,
     implicit: true,
@@ -90,16 +90,16 @@ fn judge(outcome: &mut Outcome, beam: &Beam, kind: Kind, rows: f64, [coarsest, c
         _ => (1.05 / (rows * rows) + 1e-3, "half of the share 2.1/rows² of the stiffness that linear covers add"),
     };
     let row = Row::new(format!("{name}: frequency"), "Hz", fine, exact);
-    outcome.rows.push(row.within(Tolerance::Relative(tolerance), reason));
+    outcome.rows.push(row.relative(tolerance, reason));
     if kind != Kind::Axial {
         let limit = fine + (fine - coarse) / 3.0;
         let left = 4.0 * (1.05 / (rows * rows)).powi(2) + if kind == Kind::Cantilever { 1.9e-3 } else { 4e-4 };
         let row = Row::new(format!("{name}: frequency, extrapolated"), "Hz", limit, exact);
         let reason = "Richardson's rule leaves the square of the error; the clamp's corners are singular";
-        outcome.rows.push(row.within(Tolerance::Relative(left), reason));
+        outcome.rows.push(row.relative(left, reason));
         let order = ((coarsest - coarse) / (coarse - fine)).log2();
         let row = Row::new(format!("{name}: order of the frequency in h"), "", order, 2.0);
-        outcome.rows.push(row.within(Tolerance::Absolute(0.5), "h²; the mesh does not fit the beam"));
+        outcome.rows.push(row.absolute(0.5, "h²; the mesh does not fit the beam"));
     }
 }
 
@@ -182,17 +182,7 @@ fn plot(beam: &Beam, kind: Kind, swing: &Swing) -> Plot {
     let most = swing.signal.iter().map(|p| p[1].abs()).fold(0.0, f64::max);
     let sign = if swing.signal.len() > 1 { swing.signal[1][1].signum() } else { 1.0 };
     let exact = |t: f64| sign * most * (2.0 * PI * exact(beam, kind) * t).sin();
-    Plot {
-        title: format!("B2: {kind:?}, free vibration"),
-        axes: ["time [s]".into(), "displacement [m]".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "computed".into(), points: swing.signal.clone(), marks: false },
-            Series {
-                name: "exact".into(),
-                points: swing.signal.iter().map(|p| [p[0], exact(p[0])]).collect(),
-                marks: false,
-            },
-        ],
-    }
+    Plot::new(format!("B2: {kind:?}, free vibration"), ["time [s]", "displacement [m]"])
+        .line("computed", swing.signal.clone())
+        .line("exact", swing.signal.iter().map(|p| [p[0], exact(p[0])]).collect())
 }

@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B3",
@@ -10,11 +10,11 @@ pub const PROBLEM: Problem = Problem {
     source: "σy = −γ(H − y), σx = ν/(1 − ν)·σy, settlement γH²/2Ec with Ec = E(1 − ν)/(1 + ν)(1 − 2ν). Catches wrong \
              weight, wrong confinement, and static stages that stop early",
     parameters: &[
-        Parameter { name: "height", unit: "m", default: 10.0, range: [2.0, 50.0], doc: "height" },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [1e3, 1e5], doc: "unit weight" },
-        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "rows", unit: "", default: 40.0, range: [10.0, 80.0], doc: "rows of the finest mesh" },
+        Parameter::new("height", "m", 10.0, [2.0, 50.0], "height"),
+        Parameter::new("gamma", "N/m³", 25e3, [1e3, 1e5], "unit weight"),
+        Parameter::new("young", "Pa", 1e9, [1e8, 1e11], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("rows", "", 40.0, [10.0, 80.0], "rows of the finest mesh"),
     ],
     quick: true,
     implicit: true,
@@ -46,30 +46,24 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let share = 0.1 / rows + 5e-4;
         let ratio = curve[curve.len() - 1][1] / curve[curve.len() - 2][1];
         let rows_of = [
-            Row::new("settlement of the top", "m", settlement, exact).within(
-                Tolerance::Relative(share),
-                "h² of the elements, h/25H of the supports of the base and as \
-                                                     much of those of the sides",
+            Row::new("settlement of the top", "m", settlement, exact).relative(
+                share,
+                "h² of the elements, h/25H of the supports of the base and as much of those of the sides",
             ),
-            Row::new("error of the settlement over that with twice the mesh size", "", ratio, 0.5).within(
-                Tolerance::Absolute(0.1),
+            Row::new("error of the settlement over that with twice the mesh size", "", ratio, 0.5).absolute(
+                0.1,
                 "the error of the supports, which are springs of 50·Ec/h, is as h; that of the elements as h²",
             ),
-            Row::new("vertical stress at the base", "Pa", sy, -gamma * height)
-                .within(Tolerance::Relative(0.16 / rows + 1e-3), soft),
+            Row::new("vertical stress at the base", "Pa", sy, -gamma * height).relative(0.16 / rows + 1e-3, soft),
             Row::new("horizontal stress at the base", "Pa", sx, -gamma * height * poisson / (1.0 - poisson))
-                .within(Tolerance::Absolute((0.3 / rows + 2e-3) * gamma * height * (poisson + 0.1)), soft),
+                .absolute((0.3 / rows + 2e-3) * gamma * height * (poisson + 0.1), soft),
             Row::ledger(&report),
         ];
         outcome.rows.extend(rows_of);
         outcome.plots.push(profile(setup, &simulation, &stress));
     }
-    outcome.plots.push(Plot {
-        title: "B3: error of the settlement over the mesh size".into(),
-        axes: ["mesh size h [m]".into(), "relative error [-]".into()],
-        logarithmic: [true; 2],
-        series: vec![Series { name: "computed".into(), points: curve, marks: false }],
-    });
+    let plot = Plot::new("B3: error of the settlement over the mesh size", ["mesh size h [m]", "relative error [-]"]);
+    outcome.plots.push(plot.line("computed", curve).logarithmic([true; 2]));
     Ok(outcome)
 }
 
@@ -124,16 +118,9 @@ fn profile(setup: &Setup, simulation: &Simulation, stress: &[[f64; 2]]) -> Plot 
     let computed =
         |k: usize| -> Vec<[f64; 2]> { stress.iter().zip(&covers.element_centroid).map(|(s, p)| [s[k], p.y]).collect() };
     let exact = |share: f64| vec![[-gamma * height * share, 0.0], [0.0, height]];
-    let line = |name: &str, points, marks| Series { name: name.into(), points, marks };
-    Plot {
-        title: "B3: stress over height".into(),
-        axes: ["stress [Pa]".into(), "height [m]".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            line("σy computed", computed(1), true),
-            line("σy exact", exact(1.0), false),
-            line("σx computed", computed(0), true),
-            line("σx exact", exact(poisson / (1.0 - poisson)), false),
-        ],
-    }
+    Plot::new("B3: stress over height", ["stress [Pa]", "height [m]"])
+        .marks("σy computed", computed(1))
+        .line("σy exact", exact(1.0))
+        .marks("σx computed", computed(0))
+        .line("σx exact", exact(poisson / (1.0 - poisson)))
 }

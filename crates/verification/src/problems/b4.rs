@@ -4,7 +4,7 @@ use enmm::geometry::Point;
 use enmm::model::{Simulation, StepReport};
 
 use super::continuum::{QuarterPlate, cartesian, order, polar, stress_at, stress_error};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_all};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, run_all};
 
 pub const PROBLEM: Problem = Problem {
     id: "B4",
@@ -12,13 +12,13 @@ pub const PROBLEM: Problem = Problem {
     source: "G. Kirsch (1898): stresses about a round hole in an infinite elastic plate under p vertically and K0·p \
              horizontally; catches wrong in-situ stress, wrong free surfaces and wrong stress of cut elements",
     parameters: &[
-        Parameter { name: "p", unit: "Pa", default: 10e6, range: [1e3, 1e8], doc: "vertical stress, compression" },
-        Parameter { name: "k0", unit: "", default: 0.5, range: [0.0, 3.0], doc: "horizontal over vertical stress" },
-        Parameter { name: "radius", unit: "m", default: 1.0, range: [0.1, 20.0], doc: "radius of the hole" },
-        Parameter { name: "domain", unit: "", default: 10.0, range: [4.0, 12.0], doc: "half domain over radius" },
-        Parameter { name: "mesh", unit: "", default: 0.1, range: [0.07, 0.2], doc: "mesh size over radius" },
-        Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
+        Parameter::new("p", "Pa", 10e6, [1e3, 1e8], "vertical stress, compression"),
+        Parameter::new("k0", "", 0.5, [0.0, 3.0], "horizontal over vertical stress"),
+        Parameter::new("radius", "m", 1.0, [0.1, 20.0], "radius of the hole"),
+        Parameter::new("domain", "", 10.0, [4.0, 12.0], "half domain over radius"),
+        Parameter::new("mesh", "", 0.1, [0.07, 0.2], "mesh size over radius"),
+        Parameter::new("young", "Pa", 5e10, [1e9, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.4], "Poisson's ratio"),
     ],
     quick: true,
     implicit: true,
@@ -100,12 +100,11 @@ impl Model {
             let slope = (kirsch(self.k0, r + 1e-4, angle)[1] - kirsch(self.k0, r, angle)[1]) / 1e-4;
             self.p * (0.25 * h * slope.abs() + h * h * (1.0 + self.k0))
         };
-        let reason = "a parabola fitted to element stresses over 3.5 h: second order, (h/R)²(1 + K0)p, and a \
-                      quarter of \
-                      the change of the hoop stress over one h, for elements at the wall are cut anyhow";
+        let reason = "a parabola fitted to element stresses over 3.5 h: second order, (h/R)²(1 + K0)p, and a quarter \
+                      of the change of the hoop stress over one h, for elements at the wall are cut anyhow";
         let mut rows = Vec::new();
         let mut add = |what: String, [found, exact]: [f64; 2], most: f64| {
-            rows.push(Row::new(what, "Pa", found, exact).within(Tolerance::Absolute(most), reason));
+            rows.push(Row::new(what, "Pa", found, exact).absolute(most, reason));
         };
         let k0 = self.k0;
         for r in RADII {
@@ -138,19 +137,13 @@ impl Model {
 
     fn plot(&self, simulation: &Simulation) -> Plot {
         let steps = |count: usize| (0..=count).map(move |k| 1.0 + 3.0 * k as f64 / count as f64);
-        let mut series = Vec::new();
+        let mut plot = Plot::new(format!("Stress beside a round hole, K0 = {}", self.k0), ["r/R", "stress over p"]);
         for (which, name) in [(0, "radial"), (1, "hoop")] {
             let exact = steps(60).map(|r| [r, kirsch(self.k0, r, 0.0)[which]]).collect();
             let found = steps(15).map(|r| [r, self.compare(simulation, r, 0.0)[which][0] / self.p]).collect();
-            series.push(Series { name: format!("{name}, exact"), points: exact, marks: false });
-            series.push(Series { name: format!("{name}, computed"), points: found, marks: true });
+            plot = plot.line(format!("{name}, exact"), exact).marks(format!("{name}, computed"), found);
         }
-        Plot {
-            title: format!("Stress beside a round hole, K0 = {}", self.k0),
-            axes: ["r/R".into(), "stress over p".into()],
-            series,
-            ..Plot::default()
-        }
+        plot
     }
 }
 
@@ -172,8 +165,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let row = Row::new(format!("K0 = {k0}: rms error of element stresses within 3 R"), "p", errors[1], 0.0);
         let nu = setup.get("poisson");
         let (gradient, stiff) = (model.gradient(), (1.0 - nu) / (1.0 - 2.0 * nu));
-        outcome.rows.push(row.within(
-            Tolerance::AtMost(0.4 * mesh * gradient * stiff),
+        outcome.rows.push(row.at_most(
+            0.4 * mesh * gradient * stiff,
             format!(
                 "constant strain per element: 0.4 h times the rms stress gradient there, {gradient:.3} p/R, times \
                  (1 − ν)/(1 − 2ν), the confined modulus over 2G"
@@ -181,7 +174,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         ));
         let rate = order(errors[0], errors[1], 2.0);
         let row = Row::new(format!("K0 = {k0}: order of that error in h"), "", rate, 1.0);
-        outcome.rows.push(row.within(Tolerance::Absolute(0.3), "linear covers have stresses of first order"));
+        outcome.rows.push(row.absolute(0.3, "linear covers have stresses of first order"));
     }
     Ok(outcome)
 }

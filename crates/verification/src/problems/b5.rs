@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::strip::{Motion, Rock, Strip, Wave, run as run_strip};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B5",
@@ -11,11 +11,11 @@ pub const PROBLEM: Problem = Problem {
     source: "T = 4L·√(ρ/M) with M = λ + 2μ (confined) and M = G (shear); under a base acceleration a that sets in at \
              once the head goes to twice aρL²/2M. Catches wrong moduli, masses and base motion",
     parameters: &[
-        Parameter { name: "length", unit: "m", default: 800.0, range: [1.0, 1e4], doc: "height of the column" },
-        Parameter { name: "density", unit: "kg/m³", default: 1.0, range: [1e-3, 1e5], doc: "density" },
-        Parameter { name: "shear_modulus", unit: "Pa", default: 1e4, range: [1.0, 1e12], doc: "shear modulus G" },
-        Parameter { name: "poisson", unit: "", default: 2.0 / 11.0, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "elements", unit: "", default: 20.0, range: [6.0, 80.0], doc: "mesh sizes over the height" },
+        Parameter::new("length", "m", 800.0, [1.0, 1e4], "height of the column"),
+        Parameter::new("density", "kg/m³", 1.0, [1e-3, 1e5], "density"),
+        Parameter::new("shear_modulus", "Pa", 1e4, [1.0, 1e12], "shear modulus G"),
+        Parameter::new("poisson", "", 2.0 / 11.0, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("elements", "", 20.0, [6.0, 80.0], "mesh sizes over the height"),
     ],
     quick: true,
     implicit: false,
@@ -81,16 +81,12 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
                 let reason = "linear elements and leapfrog: (ω·h)²/24c² of both signs, and supports that give by h/50L";
                 let reason = format!("{reason}, in all below 2e-3 at 20 mesh sizes, falling with 1/n");
                 let most = 2e-3 * (20.0 / count).max(0.1);
-                outcome.rows.push(
-                    Row::new(format!("{name}: period"), "s", found, exact).within(Tolerance::Relative(most), reason),
-                );
+                outcome.rows.push(Row::new(format!("{name}: period"), "s", found, exact).relative(most, reason));
                 let peak = Motion::peak(&way);
                 let reason = "the head's kink at its turn is rounded by the mesh: less than 2h/L of twice the rest";
                 let most = Tolerance::Relative(1.0 / count);
-                outcome.rows.push(
-                    Row::new(format!("{name}: greatest displacement of the head"), "m", peak, 2.0 * level)
-                        .within(most, reason),
-                );
+                let row = Row::new(format!("{name}: greatest displacement of the head"), "m", peak, 2.0 * level);
+                outcome.rows.push(row.within(most, reason));
                 outcome.rows.push(Row::ledger(&motion.last));
                 outcome.plots.push(plot(name, &times, &way, level, exact));
             }
@@ -99,10 +95,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             let limit = last + (last - middle);
             let order = ((first - middle) / (middle - last)).abs().log2();
             let reason = "error ∝ 1/n by the give of the base's springs: what two meshes extrapolate to";
-            outcome.rows.push(
-                Row::new(format!("{name}: extrapolated error of the period"), "", limit, 0.0)
-                    .within(Tolerance::AtMost(5e-4), reason),
-            );
+            let row = Row::new(format!("{name}: extrapolated error of the period"), "", limit, 0.0);
+            outcome.rows.push(row.at_most(5e-4, reason));
             outcome.rows.push(Row::new(format!("{name}: order of convergence"), "", order, 1.0));
         }
     }
@@ -119,15 +113,9 @@ fn plot(name: &str, times: &[f64], way: &[f64], level: f64, period: f64) -> Plot
         level * (1.0 - sum * 32.0 / PI.powi(3))
     };
     let line = times.iter().step_by(every).map(|t| [*t, exact(*t)]).collect();
-    Plot {
-        title: format!("B5, {name}: head of the column"),
-        axes: ["time (s)".into(), "displacement (m)".into()],
-        series: vec![
-            Series { name: "exact".into(), points: line, marks: false },
-            Series { name: "computed".into(), points: computed, marks: true },
-        ],
-        ..Plot::default()
-    }
+    Plot::new(format!("B5, {name}: head of the column"), ["time (s)", "displacement (m)"])
+        .line("exact", line)
+        .marks("computed", computed)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! B6: waves enter and leave through quiet boundaries.
 
 use super::strip::{Motion, Rock, Strip, Wave, follow, pulse, rows, run as run_strip};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "B6",
@@ -10,13 +10,13 @@ pub const PROBLEM: Problem = Problem {
              reflection; 2ρ·c·v brings one of velocity v in; a free surface doubles it. Catches wrong impedances, \
              dashpots that lag, and waves of wrong size",
     parameters: &[
-        Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e5, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
-        Parameter { name: "length", unit: "m", default: 100.0, range: [1.0, 1e5], doc: "length of the pulse" },
-        Parameter { name: "elements", unit: "", default: 30.0, range: [10.0, 200.0], doc: "mesh sizes in the pulse" },
-        Parameter { name: "velocity", unit: "m/s", default: 0.1, range: [1e-6, 0.5], doc: "particle velocity" },
-        Parameter { name: "incidence_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "oblique incidence" },
+        Parameter::new("young", "Pa", 50e9, [1e5, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("density", "kg/m³", 2650.0, [1.0, 1e5], "density"),
+        Parameter::new("length", "m", 100.0, [1.0, 1e5], "length of the pulse"),
+        Parameter::new("elements", "", 30.0, [10.0, 200.0], "mesh sizes in the pulse"),
+        Parameter::new("velocity", "m/s", 0.1, [1e-6, 0.5], "particle velocity"),
+        Parameter::new("incidence_deg", "°", 30.0, [5.0, 60.0], "oblique incidence"),
     ],
     quick: true,
     implicit: false,
@@ -94,21 +94,19 @@ impl Pulse {
         let carried = self.energy(wave, 2.0 * self.size);
         let energy = |motion: &Motion| motion.last.ledger.kinetic + motion.last.ledger.strain;
         let reason = "dispersion of the mesh changes a sin² pulse of n mesh sizes by some (2π/n)²/12";
-        outcome.rows.push(
-            Row::new(format!("{wave:?}: energy let in"), "J/m", energy(&inside), carried)
-                .within(Tolerance::Relative(0.01), reason),
-        );
+        outcome
+            .rows
+            .push(Row::new(format!("{wave:?}: energy let in"), "J/m", energy(&inside), carried).relative(0.01, reason));
         let share = energy(&after) / carried;
         let reason = "0 in theory; the verification asks for 1 %";
-        outcome.rows.push(
-            Row::new(format!("{wave:?}: reflected energy over incident"), "", share, 0.0)
-                .within(Tolerance::AtMost(0.01), reason),
-        );
+        outcome
+            .rows
+            .push(Row::new(format!("{wave:?}: reflected energy over incident"), "", share, 0.0).at_most(0.01, reason));
         outcome.rows.push(Row::ledger(&inside.last));
         let lost = after.last.ledger.residual() / carried;
         outcome.rows.push(
             Row::new(format!("{wave:?}: ledger after the wave has left, residual over incident energy"), "", lost, 0.0)
-                .within(Tolerance::AtMost(1e-3), "claim A4; all terms of now are nearly nil"),
+                .at_most(1e-3, "claim A4; all terms of now are nearly nil"),
         );
         Ok(())
     }
@@ -132,35 +130,23 @@ impl Pulse {
         };
         let ratio = Motion::peak(&surface) / self.velocity;
         let reason = "the mesh rounds the peak of a sin² pulse of n mesh sizes by some (2π/n)²/8";
-        outcome.rows.push(
-            Row::new(format!("{wave:?}: velocity of the free surface over incident"), "", ratio, 2.0)
-                .within(Tolerance::Relative(0.01), reason),
-        );
+        let row = Row::new(format!("{wave:?}: velocity of the free surface over incident"), "", ratio, 2.0);
+        outcome.rows.push(row.relative(0.01, reason));
         let reason = "up and down pulses apart: dispersion delays them by (2π/n)²/24 of their way";
         outcome.rows.push(
             Row::new(format!("{wave:?}: worst error of velocity at mid-height"), "", worst(&middle, monitors[0]), 0.0)
-                .within(Tolerance::AtMost(0.03), reason),
+                .at_most(0.03, reason),
         );
         let reason = "0 in theory; the verification asks for 1 %";
-        outcome.rows.push(
-            Row::new(format!("{wave:?}: energy left after the foot has taken the wave up"), "", left, 0.0)
-                .within(Tolerance::AtMost(0.01), reason),
-        );
-        let lines = [(&middle, monitors[0], "mid-height"), (&surface, monitors[1], "surface")];
-        let series = lines.iter().flat_map(|(signal, y, name)| {
+        let row = Row::new(format!("{wave:?}: energy left after the foot has taken the wave up"), "", left, 0.0);
+        outcome.rows.push(row.at_most(0.01, reason));
+        let mut plot = Plot::new(format!("B6: {wave:?} wave under a free surface"), ["time (s)", "velocity (m/s)"]);
+        for (signal, y, name) in [(&middle, monitors[0], "mid-height"), (&surface, monitors[1], "surface")] {
             let points = motion.points(signal);
-            let line = points.iter().map(|[t, _]| [*t, exact(*t, *y)]).collect();
-            [
-                Series { name: format!("{name}, exact"), points: line, marks: false },
-                Series { name: format!("{name}, computed"), points, marks: true },
-            ]
-        });
-        outcome.plots.push(Plot {
-            title: format!("B6: {wave:?} wave under a free surface"),
-            axes: ["time (s)".into(), "velocity (m/s)".into()],
-            series: series.collect(),
-            ..Plot::default()
-        });
+            let line = points.iter().map(|[t, _]| [*t, exact(*t, y)]).collect();
+            plot = plot.line(format!("{name}, exact"), line).marks(format!("{name}, computed"), points);
+        }
+        outcome.plots.push(plot);
         Ok(())
     }
 

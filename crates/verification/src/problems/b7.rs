@@ -4,21 +4,19 @@ use enmm::geometry::Point;
 use enmm::model::{Simulation, StepReport};
 
 use super::continuum::{list, order, quarter_circle, smooth_rise, stress_at, stress_error};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_all};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, run_all};
 
 pub const PROBLEM: Problem = Problem {
     id: "B7",
     title: "Brazil disc",
-    source: "H. Hertz (1883), Timoshenko and Goodier: a disc under two opposite point loads has 2P/(πD) of tension \
-             and \
-             6P/(πD) of compression at its centre; catches wrong point loads and wrong stress of cut boundary \
-             elements",
+    source: "H. Hertz (1883), Timoshenko and Goodier: a disc under two opposite point loads has 2P/(πD) of tension and \
+             6P/(πD) of compression at its centre; catches wrong point loads and wrong stress of cut boundary elements",
     parameters: &[
-        Parameter { name: "force", unit: "N/m", default: 1e6, range: [1e2, 1e8], doc: "load on each end, P" },
-        Parameter { name: "diameter", unit: "m", default: 1.0, range: [0.05, 50.0], doc: "diameter of the disc, D" },
-        Parameter { name: "mesh", unit: "", default: 0.02, range: [0.012, 0.04], doc: "mesh size over diameter" },
-        Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.4], doc: "Poisson's ratio" },
+        Parameter::new("force", "N/m", 1e6, [1e2, 1e8], "load on each end, P"),
+        Parameter::new("diameter", "m", 1.0, [0.05, 50.0], "diameter of the disc, D"),
+        Parameter::new("mesh", "", 0.02, [0.012, 0.04], "mesh size over diameter"),
+        Parameter::new("young", "Pa", 5e10, [1e9, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.4], "Poisson's ratio"),
     ],
     quick: true,
     implicit: true,
@@ -57,14 +55,12 @@ fn solve(setup: &mut Setup, mesh: f64) -> Result<(Simulation, StepReport), Troub
     outline.reverse();
     let ramp = 20.0 * radius * (2650.0 / setup.get("young")).sqrt();
     let text = format!(
-        "title = \"Brazil disc\"\n[domain]\noutline = {}\n[mesh]\nsize = {mesh:e}\nangle_deg = 15.0\n[gravity]\ny \
-         = 0.0\n\
-         [rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = {:e}\n\
-         [[fix]]\nedge = [[0.0, 0.0], [{radius:?}, 0.0]]\naxes = \"y\"\n\
-         [[fix]]\nedge = [[0.0, 0.0], [0.0, {radius:?}]]\naxes = \"x\"\n\
-         [[load]]\nkind = \"point\"\npoint = [0.0, {radius:?}]\nforce = [0.0, {:e}]\ntable = {}\n\
-         [[stage]]\nname = \"load\"\nkind = \"dynamic\"\ndamping = 1.0\nduration = {:e}\n\
-         [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = {:e}\n",
+        "title = \"Brazil disc\"\n[domain]\noutline = {}\n[mesh]\nsize = {mesh:e}\nangle_deg = 15.0\n[gravity]\n\
+         y = 0.0\n[rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = {:e}\n[[fix]]\n\
+         edge = [[0.0, 0.0], [{radius:?}, 0.0]]\naxes = \"y\"\n[[fix]]\nedge = [[0.0, 0.0], [0.0, {radius:?}]]\n\
+         axes = \"x\"\n[[load]]\nkind = \"point\"\npoint = [0.0, {radius:?}]\nforce = [0.0, {:e}]\ntable = {}\n\
+         [[stage]]\nname = \"load\"\nkind = \"dynamic\"\ndamping = 1.0\nduration = {:e}\n[[stage]]\nname = \"rest\"\n\
+         kind = \"static\"\nduration = {:e}\n",
         list(&outline),
         setup.get("young"),
         setup.get("poisson"),
@@ -99,7 +95,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let (computed, exact) = (found(&simulation, share * diameter), exact(force, diameter, share * diameter));
         for (k, what) in ["horizontal stress", "vertical stress"].into_iter().enumerate() {
             let row = Row::new(format!("{what} {place}"), "Pa", computed[k], exact[k]);
-            rows.push(row.within(Tolerance::Absolute(most), reason));
+            rows.push(row.absolute(most, reason));
         }
     }
     let (rough, _) = solve(setup, 2.0 * mesh)?;
@@ -108,28 +104,22 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let errors = [&rough, &simulation].map(|s| stress_error(s, reach, &field) / unit);
     let row = Row::new("rms error of element stresses within D/4 of the centre", "2P/(πD)", errors[1], 0.0);
     let reason = "constant stress per element: 0.4 h times the stress gradient, some 10 units over D, times the same";
-    rows.push(row.within(Tolerance::AtMost(4.0 * mesh * stiff), reason));
+    rows.push(row.at_most(4.0 * mesh * stiff, reason));
     let row = Row::new("order of that error in h", "", order(errors[0], errors[1], 2.0), 1.0);
-    rows.push(row.within(Tolerance::Absolute(0.3), "linear covers have stresses of first order"));
+    rows.push(row.absolute(0.3, "linear covers have stresses of first order"));
     rows.push(Row::ledger(&report));
     Ok(Outcome { rows, plots: vec![plot(&simulation, force, diameter)] })
 }
 
 fn plot(simulation: &Simulation, force: f64, diameter: f64) -> Plot {
     let unit = exact(force, diameter, 0.0)[0];
-    let mut series = Vec::new();
+    let mut plot = Plot::new("Stress on the horizontal diameter of a Brazil disc", ["x/D", "stress over 2P/(πD)"]);
     for (k, name) in ["horizontal", "vertical"].into_iter().enumerate() {
         let curve = (0..=50).map(|n| 0.01 * f64::from(n)).map(|x| [x, exact(force, diameter, x * diameter)[k] / unit]);
-        series.push(Series { name: format!("{name}, exact"), points: curve.collect(), marks: false });
         let marks = (0..=24).map(|n| 0.02 * f64::from(n)).map(|x| [x, found(simulation, x * diameter)[k] / unit]);
-        series.push(Series { name: format!("{name}, computed"), points: marks.collect(), marks: true });
+        plot = plot.line(format!("{name}, exact"), curve.collect()).marks(format!("{name}, computed"), marks.collect());
     }
-    Plot {
-        title: "Stress on the horizontal diameter of a Brazil disc".into(),
-        axes: ["x/D".into(), "stress over 2P/(πD)".into()],
-        series,
-        ..Plot::default()
-    }
+    plot
 }
 
 #[cfg(test)]

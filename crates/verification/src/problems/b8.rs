@@ -4,28 +4,25 @@ use enmm::geometry::Point;
 use enmm::model::{Simulation, StepReport};
 
 use super::continuum::{QuarterPlate, cartesian, polar, stress_at};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, run_all};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble, run_all};
 
 pub const PROBLEM: Problem = Problem {
     id: "B8",
     title: "Round opening in Mohr–Coulomb rock under hydrostatic stress",
     source: "J. Salençon (1969): plastic radius, stresses and convergence of a round opening; derived in this file \
-             from \
-             equilibrium and flow, and the convergence checked by numerical integration; catches wrong yield, flow \
-             rule and out-of-plane stress",
+             from equilibrium and flow, and the convergence checked by numerical integration; catches wrong yield, \
+             flow rule and out-of-plane stress",
     parameters: &[
-        Parameter { name: "p0", unit: "Pa", default: 18e6, range: [1e4, 1e9], doc: "stress far away, compression" },
-        Parameter { name: "pi", unit: "Pa", default: 0.0, range: [0.0, 1e8], doc: "pressure on the wall" },
-        Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [5.0, 55.0], doc: "friction angle" },
-        Parameter { name: "cohesion", unit: "Pa", default: 3e6, range: [1e2, 1e9], doc: "cohesion" },
-        Parameter {
-            name: "psi_deg", unit: "°", default: 10.0, range: [0.0, 55.0], doc: "dilation angle, at most phi"
-        },
-        Parameter { name: "radius", unit: "m", default: 1.0, range: [0.1, 20.0], doc: "radius of the opening" },
-        Parameter { name: "domain", unit: "", default: 6.0, range: [3.0, 12.0], doc: "half domain over radius" },
-        Parameter { name: "mesh", unit: "", default: 0.07, range: [0.05, 0.2], doc: "mesh size over radius" },
-        Parameter { name: "young", unit: "Pa", default: 2e10, range: [1e7, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.3, range: [0.0, 0.4], doc: "Poisson's ratio" },
+        Parameter::new("p0", "Pa", 18e6, [1e4, 1e9], "stress far away, compression"),
+        Parameter::new("pi", "Pa", 0.0, [0.0, 1e8], "pressure on the wall"),
+        Parameter::new("phi_deg", "°", 30.0, [5.0, 55.0], "friction angle"),
+        Parameter::new("cohesion", "Pa", 3e6, [1e2, 1e9], "cohesion"),
+        Parameter::new("psi_deg", "°", 10.0, [0.0, 55.0], "dilation angle, at most phi"),
+        Parameter::new("radius", "m", 1.0, [0.1, 20.0], "radius of the opening"),
+        Parameter::new("domain", "", 6.0, [3.0, 12.0], "half domain over radius"),
+        Parameter::new("mesh", "", 0.07, [0.05, 0.2], "mesh size over radius"),
+        Parameter::new("young", "Pa", 2e10, [1e7, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.3, [0.0, 0.4], "Poisson's ratio"),
     ],
     quick: true,
     implicit: false,
@@ -140,11 +137,9 @@ fn solve(setup: &mut Setup, opening: &Opening, mesh: f64) -> Result<(Simulation,
         return Err(Trouble(format!("the plastic radius is {share:.2} R, the domain must be 1.25 times as large")));
     }
     let text = format!(
-        "title = \"Round opening in rock that yields\"\n{}[rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = \
-         {:e}\n\
-         friction_deg = {:?}\ncohesion = {:e}\ndilation_deg = {:?}\n[in_situ]\nsxx = {p0:e}\nsyy = {p0:e}\nszz = \
-         {p0:e}\n\
-         {}[[monitor]]\nname = \"wall\"\npoint = [0.0, {:?}]\n",
+        "title = \"Round opening in rock that yields\"\n{}[rock.rock]\ndensity = 2650.0\nyoung = {:e}\npoisson = {:e}\n\
+         friction_deg = {:?}\ncohesion = {:e}\ndilation_deg = {:?}\n[in_situ]\nsxx = {p0:e}\nsyy = {p0:e}\n\
+         szz = {p0:e}\n{}[[monitor]]\nname = \"wall\"\npoint = [0.0, {:?}]\n",
         plate.text(),
         get("young"),
         get("poisson"),
@@ -183,15 +178,12 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let (wall, edge) = (opening.radius, opening.plastic_radius());
     let row = Row::new("plastic radius by area", "m", yielded_radius(&simulation, wall), edge);
     let reason = "the edge of the zone is known to one element, h";
-    rows.push(row.within(Tolerance::Absolute(mesh * wall), reason));
+    rows.push(row.absolute(mesh * wall, reason));
     rows.extend(stress_rows(&simulation, &opening, mesh * wall));
     let row = Row::new("convergence of the wall", "m", -simulation.monitor(0).0.y, opening.convergence());
     let judged = opening.middle_is_out_of_plane();
     rows.push(if judged {
-        row.within(
-            Tolerance::Relative(0.6 * mesh),
-            "plastic strain at the wall of elements that are known to one h: 0.6·h/R",
-        )
+        row.relative(0.6 * mesh, "plastic strain at the wall of elements that are known to one h: 0.6·h/R")
     } else {
         row.within(Tolerance::Shown, "rock flows out of the plane as well, for which the formula does not hold")
     });
@@ -214,7 +206,7 @@ fn stress_rows(simulation: &Simulation, opening: &Opening, mesh: f64) -> Vec<Row
         let hoop = if r <= edge { opening.kp * radial } else { radial };
         for (k, which, most) in [(0, "radial", radial), (1, "hoop", hoop)] {
             let row = Row::new(format!("{which} stress at 45°, {name}, r = {r:.3} m"), "Pa", computed[k], exact[k]);
-            rows.push(row.within(Tolerance::Absolute(most), reason));
+            rows.push(row.absolute(most, reason));
         }
     }
     rows
@@ -223,20 +215,14 @@ fn stress_rows(simulation: &Simulation, opening: &Opening, mesh: f64) -> Vec<Row
 fn plot(simulation: &Simulation, opening: &Opening) -> Plot {
     let end = 3.0 * opening.plastic_radius() / opening.radius;
     let steps = |count: usize| (0..=count).map(move |k| 1.0 + (end - 1.0) * k as f64 / count as f64);
-    let mut series = Vec::new();
+    let mut plot = Plot::new("Stress about an opening in rock that yields", ["r/R", "stress over p0"]);
     for (which, name) in [(0, "radial"), (1, "hoop")] {
         let exact = steps(80).map(|r| [r, opening.stress(r * opening.radius)[which] / opening.p0]).collect();
         let computed = |r: f64| found(simulation, r * opening.radius, std::f64::consts::FRAC_PI_4)[which] / opening.p0;
-        series.push(Series { name: format!("{name}, exact"), points: exact, marks: false });
-        let points = steps(24).map(|r| [r, computed(r)]).collect();
-        series.push(Series { name: format!("{name}, computed"), points, marks: true });
+        let found = steps(24).map(|r| [r, computed(r)]).collect();
+        plot = plot.line(format!("{name}, exact"), exact).marks(format!("{name}, computed"), found);
     }
-    Plot {
-        title: "Stress about an opening in rock that yields".into(),
-        axes: ["r/R".into(), "stress over p0".into()],
-        series,
-        ..Plot::default()
-    }
+    plot
 }
 
 #[cfg(test)]

@@ -52,6 +52,22 @@ pub struct Fate {
 }
 
 impl Block {
+    /// An upright block of these sides (m) on a level plane without friction, of the stiffness and mesh that problems
+    /// share; gravity grows within `ramp` (in √(h/g)).
+    pub fn level(setup: &Setup, [base, height]: [f64; 2], ramp: f64) -> Self {
+        Self {
+            base,
+            height,
+            dip: 0.0,
+            tilt: 0.0,
+            friction_deg: 0.0,
+            young: setup.get("stiffness") * DENSITY * G * height,
+            mesh: setup.get("mesh") * height,
+            horizontal: 0.0,
+            ramp: ramp * (height / G).sqrt(),
+        }
+    }
+
     /// The case of the block on its plane.
     pub fn case(&self, duration: f64) -> String {
         let Self { base: b, height: h, dip, .. } = *self;

@@ -2,7 +2,7 @@
 
 use super::block::G;
 use crate::parts::{rock, turn};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, wider_open};
 use enmm::geometry::{Point, Vector};
 use enmm::model::tables::BlockId;
 use enmm::model::{Simulation, StepReport};
@@ -14,41 +14,33 @@ pub const PROBLEM: Problem = Problem {
              tips over its lower edge where tan φ > b/h; catches wrong friction, creep and numerical damping of rigid \
              motion",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 42.0], doc: "dip of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "friction of the block" },
-        Parameter { name: "a_steep_deg", unit: "°", default: 45.0, range: [5.0, 60.0], doc: "dip of a steeper plane" },
-        Parameter { name: "phi_steep_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction there" },
-        Parameter {
-            name: "t",
-            unit: "s",
-            default: 1.0,
-            range: [0.2, 2.0],
-            doc: "time of sliding; twice that for the square",
-        },
-        Parameter { name: "a_rest_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "dip where a block stays" },
-        Parameter { name: "phi_rest_deg", unit: "°", default: 31.0, range: [5.0, 60.0], doc: "friction there" },
-        Parameter { name: "t_rest", unit: "s", default: 60.0, range: [2.0, 300.0], doc: "time of rest" },
-        Parameter {
-            name: "a_brake_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "dip where a block stops"
-        },
-        Parameter {
-            name: "phi_brake_deg",
-            unit: "°",
-            default: 30.0,
-            range: [5.0, 40.0],
-            doc: "friction there; a block as high as long tips over from 45° on",
-        },
-        Parameter { name: "v0", unit: "m/s", default: 2.0, range: [0.2, 5.0], doc: "speed at the start there" },
-        Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 2e11], doc: "Young's modulus" },
-        Parameter { name: "young_rest", unit: "Pa", default: 2e8, range: [1e7, 1e11], doc: "Young's modulus at rest" },
-        Parameter {
-            name: "young_soft",
-            unit: "Pa",
-            default: 1e9,
-            range: [1e8, 1e11],
-            doc: "Young's modulus of the block whose acceleration is taken",
-        },
-        Parameter { name: "mesh", unit: "m", default: 0.6, range: [0.2, 1.5], doc: "mesh size" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 42.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 20.0, [0.0, 40.0], "friction of the block"),
+        Parameter::new("a_steep_deg", "°", 45.0, [5.0, 60.0], "dip of a steeper plane"),
+        Parameter::new("phi_steep_deg", "°", 30.0, [0.0, 55.0], "friction there"),
+        Parameter::new("t", "s", 1.0, [0.2, 2.0], "time of sliding; twice that for the square"),
+        Parameter::new("a_rest_deg", "°", 30.0, [5.0, 60.0], "dip where a block stays"),
+        Parameter::new("phi_rest_deg", "°", 31.0, [5.0, 60.0], "friction there"),
+        Parameter::new("t_rest", "s", 60.0, [2.0, 300.0], "time of rest"),
+        Parameter::new("a_brake_deg", "°", 20.0, [0.0, 40.0], "dip where a block stops"),
+        Parameter::new(
+            "phi_brake_deg",
+            "°",
+            30.0,
+            [5.0, 40.0],
+            "friction there; a block as high as long tips over from 45° on",
+        ),
+        Parameter::new("v0", "m/s", 2.0, [0.2, 5.0], "speed at the start there"),
+        Parameter::new("young", "Pa", 5e10, [1e9, 2e11], "Young's modulus"),
+        Parameter::new("young_rest", "Pa", 2e8, [1e7, 1e11], "Young's modulus at rest"),
+        Parameter::new(
+            "young_soft",
+            "Pa",
+            1e9,
+            [1e8, 1e11],
+            "Young's modulus of the block whose acceleration is taken",
+        ),
+        Parameter::new("mesh", "m", 0.6, [0.2, 1.5], "mesh size"),
     ],
     quick: true,
     implicit: true,
@@ -214,7 +206,7 @@ fn way_row(incline: &Incline, slide: &Slide) -> Row {
     let t = slide.time();
     let exact = 0.5 * incline.acceleration() * t * t;
     let name = format!("slip, a = {}°, φ = {:.2}°, t = {t:.4} s", incline.slope, incline.friction);
-    Row::new(name, "m", slide.way(), exact).within(Tolerance::Relative(swing(incline, t)), SWING)
+    Row::new(name, "m", slide.way(), exact).relative(swing(incline, t), SWING)
 }
 
 /// The acceleration of a block of soft rock, by the second difference of three places, in which an offset of the speed
@@ -238,7 +230,7 @@ fn soft(setup: &mut Setup, outcome: &mut Outcome, t: f64) -> Result<StepReport, 
     let reason = "friction is tan φ times the normal force at the end of each step, and the impulse of that force the \
                   weight's; the second difference of places is free of the offset of the start; within 3° of the dip \
                   by the swing of the block, and in soft rock by friction that follows it late";
-    outcome.rows.push(Row::new(name, "m/s²", found, exact).within(Tolerance::Absolute(most), reason));
+    outcome.rows.push(Row::new(name, "m/s²", found, exact).absolute(most, reason));
     Ok(slide.report)
 }
 
@@ -256,19 +248,12 @@ fn square(setup: &mut Setup, outcome: &mut Outcome, incline: Incline, t: f64) ->
     let [half, whole] = [points[20], points[40]];
     let ratio = whole[1] / half[1] / (whole[0] / half[0]).powi(2) * 4.0;
     let row = Row::new("s(2t) over s(t)", "", ratio, 4.0);
-    outcome.rows.push(row.within(Tolerance::Relative(swing(&incline, t)), SWING));
+    outcome.rows.push(row.relative(swing(&incline, t), SWING));
     outcome.rows.push(way_row(&incline, &slide));
     outcome.rows.push(Row::ledger(&slide.report));
     let exact = points.iter().map(|p| [p[0], 0.5 * incline.acceleration() * p[0] * p[0]]).collect();
-    outcome.plots.push(Plot {
-        title: format!("Slip, a = {}°, φ = {}°", incline.slope, incline.friction),
-        axes: ["t (s)".to_owned(), "slip (m)".to_owned()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "exact".to_owned(), points: exact, marks: false },
-            Series { name: "computed".to_owned(), points, marks: true },
-        ],
-    });
+    let plot = Plot::new(format!("Slip, a = {}°, φ = {}°", incline.slope, incline.friction), ["t (s)", "slip (m)"]);
+    outcome.plots.push(plot.line("exact", exact).marks("computed", points));
     Ok(())
 }
 
@@ -286,11 +271,11 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome) -> Result<StepReport, Trouble>
     let most = UNIT_WEIGHT / (0.3 * young);
     let row = Row::new("way in the first second of rest over ρg/0.3E", "", first / most, 0.0);
     let reason = "the shear of a block 1 m high over the stiffness of its joint; at most all of it is taken up anew";
-    outcome.rows.push(row.within(Tolerance::AtMost(1.0), reason));
+    outcome.rows.push(row.at_most(1.0, reason));
     slide.advance(seconds - 1.0)?;
     let reason = "1e-8 of the block's size; the take-up is over in the first second";
     let name = format!("creep from 1 s to {seconds} s, φ = {friction}° on {slope}°");
-    outcome.rows.push(Row::new(name, "m", slide.way() - first, 0.0).within(Tolerance::AtMost(1e-8), reason));
+    outcome.rows.push(Row::new(name, "m", slide.way() - first, 0.0).at_most(1e-8, reason));
     Ok(slide.report)
 }
 
@@ -314,15 +299,15 @@ fn stop(setup: &mut Setup, outcome: &mut Outcome) -> Result<StepReport, Trouble>
     let way = slide.way();
     outcome.rows.push(
         Row::new(format!("way until rest, v0 = {speed} m/s, a = {slope}°, φ = {friction}°"), "m", way, incline.way)
-            .within(Tolerance::Relative(2.0 * swing(&incline, 1.0)), SWING),
+            .relative(2.0 * swing(&incline, 1.0), SWING),
     );
     let reason = "asked every 0.2 % of the run, and by whole steps; the shear of the last slip swings for some \
                   milliseconds, and friction follows the normal force as late";
     let time = Row::new("time until rest", "s", stopped.unwrap_or(f64::NAN), speed / brake);
     let most = 0.015 * speed / brake + 2.0 * slide.simulation.model().dt;
-    outcome.rows.push(time.within(Tolerance::Absolute(most), reason));
+    outcome.rows.push(time.absolute(most, reason));
     slide.advance(0.2)?;
     let row = Row::new("creep after that", "m", slide.way() - way, 0.0);
-    outcome.rows.push(row.within(Tolerance::AtMost(1e-8), "1e-8 of the block's size"));
+    outcome.rows.push(row.at_most(1e-8, "1e-8 of the block's size"));
     Ok(slide.report)
 }

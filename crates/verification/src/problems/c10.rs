@@ -10,16 +10,16 @@ pub const PROBLEM: Problem = Problem {
     source: "limit equilibrium of the wedge above the joint through the toe, (cA + W·cos ψ·tan φ)/(W·sin ψ), which is \
              the least of all parallel joints; once with that joint alone, once with a set above it",
     parameters: &[
-        Parameter { name: "height", unit: "m", default: 260.0, range: [10.0, 1000.0], doc: "height of the slope" },
-        Parameter { name: "face_deg", unit: "°", default: 55.0, range: [20.0, 80.0], doc: "dip of the face" },
-        Parameter { name: "joint_deg", unit: "°", default: 35.0, range: [10.0, 70.0], doc: "dip of the joints" },
-        Parameter { name: "cohesion", unit: "Pa", default: 1e5, range: [0.0, 1e7], doc: "cohesion of the joints" },
-        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [1.0, 70.0], doc: "friction of the joints" },
-        Parameter { name: "density", unit: "kg/m³", default: 2660.0, range: [1e3, 4e3], doc: "density of the rock" },
-        Parameter { name: "joints", unit: "", default: 4.0, range: [1.0, 20.0], doc: "joints of the set" },
-        Parameter { name: "spacing", unit: "m", default: 20.0, range: [1.0, 200.0], doc: "distance of the joints" },
-        Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 2e11], doc: "Young's modulus of the rock" },
-        Parameter { name: "mesh", unit: "", default: 0.12, range: [0.02, 0.3], doc: "mesh size over height" },
+        Parameter::new("height", "m", 260.0, [10.0, 1000.0], "height of the slope"),
+        Parameter::new("face_deg", "°", 55.0, [20.0, 80.0], "dip of the face"),
+        Parameter::new("joint_deg", "°", 35.0, [10.0, 70.0], "dip of the joints"),
+        Parameter::new("cohesion", "Pa", 1e5, [0.0, 1e7], "cohesion of the joints"),
+        Parameter::new("phi_deg", "°", 40.0, [1.0, 70.0], "friction of the joints"),
+        Parameter::new("density", "kg/m³", 2660.0, [1e3, 4e3], "density of the rock"),
+        Parameter::new("joints", "", 4.0, [1.0, 20.0], "joints of the set"),
+        Parameter::new("spacing", "m", 20.0, [1.0, 200.0], "distance of the joints"),
+        Parameter::new("young", "Pa", 5e10, [1e9, 2e11], "Young's modulus of the rock"),
+        Parameter::new("mesh", "", 0.12, [0.02, 0.3], "mesh size over height"),
     ],
     quick: true,
     implicit: false,
@@ -27,23 +27,9 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn slide(setup: &Setup, planes: u32) -> PlaneSlide {
-    let height = setup.get("height");
-    PlaneSlide {
-        height,
-        crack: 0.0,
-        face: setup.get("face_deg").to_radians(),
-        plane: setup.get("joint_deg").to_radians(),
-        cohesion: setup.get("cohesion"),
-        friction: setup.get("phi_deg").to_radians(),
-        unit_weight: setup.get("density") * G,
-        water_weight: 1e3 * G,
-        water: 0.0,
-        seismic: 0.0,
-        young: setup.get("young"),
-        size: setup.get("mesh") * height,
-        planes,
-        spacing: setup.get("spacing"),
-    }
+    let slide = PlaneSlide::of(setup, setup.get("joint_deg"), setup.get("density") * G);
+    let size = setup.get("mesh") * slide.height;
+    PlaneSlide { young: setup.get("young"), size, planes, spacing: setup.get("spacing"), ..slide }
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {

@@ -6,7 +6,7 @@ use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
 use super::block::{G, advance, bisect};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C11",
@@ -21,15 +21,13 @@ pub const PROBLEM: Problem = Problem {
              after gravity has grown the arch rests, or falls. Catches hinges at the wrong place, corners that \
              interpenetrate, energy that holds or throws an arch.",
     parameters: &[
-        Parameter { name: "n", unit: "", default: 15.0, range: [5.0, 41.0], doc: "number of voussoirs" },
-        Parameter { name: "n_low", unit: "", default: 8.0, range: [5.0, 41.0], doc: "number of a second arch" },
-        Parameter { name: "n_high", unit: "", default: 24.0, range: [5.0, 41.0], doc: "number of a third arch" },
-        Parameter { name: "R", unit: "m", default: 10.0, range: [0.5, 100.0], doc: "mean radius" },
-        Parameter { name: "phi_deg", unit: "°", default: 45.0, range: [30.0, 70.0], doc: "friction angle; no slip" },
-        Parameter {
-            name: "stiffness", unit: "", default: 1e5, range: [2e4, 1e7], doc: "Young's modulus over ρ·g·R"
-        },
-        Parameter { name: "time", unit: "", default: 8.0, range: [6.0, 60.0], doc: "time to fall, in √(R/g)" },
+        Parameter::new("n", "", 15.0, [5.0, 41.0], "number of voussoirs"),
+        Parameter::new("n_low", "", 8.0, [5.0, 41.0], "number of a second arch"),
+        Parameter::new("n_high", "", 24.0, [5.0, 41.0], "number of a third arch"),
+        Parameter::new("R", "m", 10.0, [0.5, 100.0], "mean radius"),
+        Parameter::new("phi_deg", "°", 45.0, [30.0, 70.0], "friction angle; no slip"),
+        Parameter::new("stiffness", "", 1e5, [2e4, 1e7], "Young's modulus over ρ·g·R"),
+        Parameter::new("time", "", 8.0, [6.0, 60.0], "time to fall, in √(R/g)"),
     ],
     quick: true,
     implicit: true,
@@ -218,11 +216,10 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         found.push([n as f64, limit]);
         let row = Row::new(format!("least t/R of {n} voussoirs"), "", limit, exact)
             .from(Origin::Numerical("limit analysis of these voussoirs"));
-        rows.push(row.within(
-            Tolerance::Relative(1e-2),
-            "half the width of the bisection, 2e-3 (quick form 5e-3), and the springs of the \
-             joints: each gives way by some ρ·g·R·h/E, which over n joints and the lever R/t \
-             moves the line of thrust by 5e-3 of t",
+        rows.push(row.relative(
+            1e-2,
+            "half the width of the bisection, 2e-3 (quick form 5e-3), and the springs of the joints: each gives way by \
+             some ρ·g·R·h/E, which over n joints and the lever R/t moves the line of thrust by 5e-3 of t",
         ));
     }
     let most = found.last().copied().unwrap_or_default();
@@ -239,42 +236,23 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
 
 fn limits(found: &[[f64; 2]]) -> Plot {
     let exact = (5..=41).map(|n| [n as f64, Arch::limit(n)]).collect();
-    Plot {
-        title: "Least thickness of a semicircular arch".to_owned(),
-        axes: ["number of voussoirs".to_owned(), "t/R".to_owned()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "limit analysis, n voussoirs".to_owned(), points: exact, marks: false },
-            Series {
-                name: "joints everywhere".to_owned(),
-                points: [5.0, 41.0].map(|n| [n, Arch::limit(1000)]).to_vec(),
-                marks: false,
-            },
-            Series { name: "computed".to_owned(), points: found.to_vec(), marks: true },
-        ],
-    }
+    Plot::new("Least thickness of a semicircular arch", ["number of voussoirs", "t/R"])
+        .line("limit analysis, n voussoirs", exact)
+        .line("joints everywhere", [5.0, 41.0].map(|n| [n, Arch::limit(1000)]).to_vec())
+        .marks("computed", found.to_vec())
 }
 
 /// Way of the crown 4 % above and below the limit, and the ledgers of both.
 fn crown(setup: &mut Setup, n: usize) -> Result<(Plot, Vec<Row>), Trouble> {
     let limit = Arch::limit(n);
-    let (mut series, mut rows) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
+    let mut plot = Plot::new(format!("Way of the crown of {n} voussoirs"), ["time [s]", "way down over thickness"]);
     for (factor, name, word) in [(1.04, "above", "4 % above the limit"), (0.96, "below", "4 % below the limit")] {
         let fate = fate(setup, &Arch { n, t: factor * limit }, &format!("n{n}_{name}"))?;
         let scale = factor * limit * setup.get("R");
-        series.push(Series {
-            name: word.to_owned(),
-            points: fate.path.iter().map(|p| [p[0], p[1] / scale]).collect(),
-            marks: true,
-        });
+        plot = plot.marks(word, fate.path.iter().map(|p| [p[0], p[1] / scale]).collect());
         rows.push(Row { quantity: format!("{}, {word}", fate.ledger.quantity), ..fate.ledger });
     }
-    let plot = Plot {
-        title: format!("Way of the crown of {n} voussoirs"),
-        axes: ["time [s]".to_owned(), "way down over thickness".to_owned()],
-        logarithmic: [false; 2],
-        series,
-    };
     Ok((plot, rows))
 }
 

@@ -4,34 +4,21 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::StepReport;
 
 use crate::parts::turn;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C12",
     title: "Bolt that holds a block on a plane",
     source: "Limit equilibrium: T = W·(sin a − cos a·tan φ)/(cos δ + sin δ·tan φ) for a bolt that pulls upslope at δ \
-    into \
-             the plane; the least tension is searched by bisection on the pretension of a soft bar; catches wrong \
+             into the plane; the least tension is searched by bisection on the pretension of a soft bar; catches wrong \
              directions and sizes of bolt forces",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 45.0, range: [10.0, 60.0], doc: "dip of the plane" },
-        Parameter {
-            name: "phi_deg",
-            unit: "°",
-            default: 30.0,
-            range: [0.0, 50.0],
-            doc: "friction angle, below the dip",
-        },
-        Parameter { name: "weight", unit: "kN/m", default: 100.0, range: [1.0, 1e4], doc: "weight of the block" },
-        Parameter {
-            name: "delta_deg",
-            unit: "°",
-            default: 40.0,
-            range: [0.0, 100.0],
-            doc: "one more angle of the bolt",
-        },
-        Parameter { name: "spacing", unit: "m", default: 1.0, range: [0.2, 10.0], doc: "distance between bolts" },
-        Parameter { name: "mesh", unit: "m", default: 0.6, range: [0.2, 1.0], doc: "mesh size" },
+        Parameter::new("a_deg", "°", 45.0, [10.0, 60.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 30.0, [0.0, 50.0], "friction angle, below the dip"),
+        Parameter::new("weight", "kN/m", 100.0, [1.0, 1e4], "weight of the block"),
+        Parameter::new("delta_deg", "°", 40.0, [0.0, 100.0], "one more angle of the bolt"),
+        Parameter::new("spacing", "m", 1.0, [0.2, 10.0], "distance between bolts"),
+        Parameter::new("mesh", "m", 0.6, [0.2, 1.0], "mesh size"),
     ],
     quick: true,
     implicit: true,
@@ -57,18 +44,11 @@ fn tension(weight: f64, slope: f64, friction: f64, delta: f64) -> f64 {
 fn case(setup: &Setup, delta: f64, pretension: f64) -> String {
     let [slope, friction, weight] = ["a_deg", "phi_deg", "weight"].map(|name| setup.get(name));
     let [length, height] = BLOCK;
-    let outline = [
-        [-WALL - 2.0, -1.5],
-        [length + 1.5, -1.5],
-        [length + 1.5, 0.0],
-        [length, 0.0],
-        [length, height],
-        [0.0, height],
-        [0.0, 0.0],
-        [-WALL, 0.0],
-        [-WALL, height + 1.0],
-        [-WALL - 2.0, height + 1.0],
-    ];
+    let [left, right] = [-WALL - 2.0, length + 1.5];
+    let base = [[left, -1.5], [right, -1.5], [right, 0.0]];
+    let block = [[length, 0.0], [length, height], [0.0, height], [0.0, 0.0]];
+    let wall = [[-WALL, 0.0], [-WALL, height + 1.0], [left, height + 1.0]];
+    let outline = [&base[..], &block, &wall].concat();
     let centre = [0.5 * length, 0.5 * height];
     let to_wall = (centre[0] + WALL + 0.6) / delta.cos().max(1e-9);
     let to_base = (centre[1] + 0.6) / delta.sin().max(1e-9);
@@ -182,21 +162,18 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         found.push([delta.to_degrees(), computed]);
         let reason = "bisection to 3e-4; a block counts as sliding from 2e-4 g, which is up to 1e-3 of the tension";
         let row = Row::new(format!("least tension, {name}"), "kN/m", computed, exact(delta));
-        rows.push(row.within(Tolerance::Absolute(2e-3 * exact(delta).max(0.1 * weight)), reason));
+        rows.push(row.absolute(2e-3 * exact(delta).max(0.1 * weight), reason));
         if delta == extra {
             rows.push(Row::ledger(&report));
         }
     }
     let curve = (0..=100).map(f64::from).map(|d| [d, exact(d.to_radians())]).filter(|p| p[1].is_finite()).collect();
-    let plot = Plot {
-        title: "Least tension for a factor of safety of 1".into(),
-        axes: ["angle of the bolt into the plane (°)".into(), "tension (kN/m)".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "limit equilibrium".into(), points: curve, marks: false },
-            Series { name: "computed".into(), points: found, marks: true },
-        ],
-    };
+    let plot = Plot::new(
+        "Least tension for a factor of safety of 1",
+        ["angle of the bolt into the plane (°)", "tension (kN/m)"],
+    )
+    .line("limit equilibrium", curve)
+    .marks("computed", found);
     Ok(Outcome { rows, plots: vec![plot] })
 }
 

@@ -2,7 +2,7 @@
 
 use super::block::G;
 use super::incline::{ledger_row, trial_plot};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, Values};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble, Values};
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
 pub const PROBLEM: Problem = Problem {
@@ -13,14 +13,14 @@ pub const PROBLEM: Problem = Problem {
              of rock that is not divided by the factor, and triangles that lock where rock flows: they would hold 4 % \
              more on the coarse mesh, and 10 % more on the fine one in rock that is ten times as stiff",
     parameters: &[
-        Parameter { name: "height", unit: "m", default: 10.0, range: [1.0, 100.0], doc: "height H of the slope" },
-        Parameter { name: "slope", unit: "", default: 2.0, range: [1.0, 4.0], doc: "cot of the face" },
-        Parameter { name: "phi_deg", unit: "°", default: 20.0, range: [5.0, 40.0], doc: "friction of the soil" },
-        Parameter { name: "psi_deg", unit: "°", default: 0.0, range: [0.0, 40.0], doc: "its dilation, at most phi" },
-        Parameter { name: "cohesion", unit: "", default: 0.05, range: [0.01, 0.5], doc: "its cohesion over γH" },
-        Parameter { name: "gamma", unit: "N/m³", default: 20e3, range: [1e4, 3e4], doc: "its unit weight γ" },
-        Parameter { name: "young", unit: "", default: 500.0, range: [100.0, 1e4], doc: "Young's modulus over γH" },
-        Parameter { name: "poisson", unit: "", default: 0.3, range: [0.0, 0.4], doc: "Poisson's ratio" },
+        Parameter::new("height", "m", 10.0, [1.0, 100.0], "height H of the slope"),
+        Parameter::new("slope", "", 2.0, [1.0, 4.0], "cot of the face"),
+        Parameter::new("phi_deg", "°", 20.0, [5.0, 40.0], "friction of the soil"),
+        Parameter::new("psi_deg", "°", 0.0, [0.0, 40.0], "its dilation, at most phi"),
+        Parameter::new("cohesion", "", 0.05, [0.01, 0.5], "its cohesion over γH"),
+        Parameter::new("gamma", "N/m³", 20e3, [1e4, 3e4], "its unit weight γ"),
+        Parameter::new("young", "", 500.0, [100.0, 1e4], "Young's modulus over γH"),
+        Parameter::new("poisson", "", 0.3, [0.0, 0.4], "Poisson's ratio"),
     ],
     quick: true,
     implicit: false,
@@ -162,12 +162,8 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let factor = reduce(setup, 20.0, 10.0, [low, None])?.factor().unwrap_or(f64::NAN);
         let row = Row::new("factor of safety, mesh size H/20, ten times stiffer", "", factor, exact).from(bishop);
         outcome.rows.push(row.within(TOLERANCE, REASON));
-        outcome.plots.push(Plot {
-            title: "Factor of safety over mesh size".into(),
-            axes: ["mesh size over height".into(), "factor of safety".into()],
-            logarithmic: [false; 2],
-            series: Series::beside("Bishop's simplified method", |_| exact, points),
-        });
+        let plot = Plot::new("Factor of safety over mesh size", ["mesh size over height", "factor of safety"]);
+        outcome.plots.push(plot.beside("Bishop's simplified method", |_| exact, points));
     }
     Ok(outcome)
 }

@@ -3,7 +3,7 @@
 use super::block::G;
 use super::limit::Scene;
 use crate::parts::turn;
-use crate::{Outcome, Parameter, Problem, Row, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Problem, Row, Setup, Trouble};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
@@ -14,16 +14,16 @@ pub const PROBLEM: Problem = Problem {
              however many; a step holds a block at its foot. F7 has the same by limit analysis. Catches corners that \
              hold blocks where strength does not, and steps that let them pass",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [10.0, 40.0], doc: "dip of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 20.0, range: [0.0, 35.0], doc: "friction, below a_deg" },
-        Parameter { name: "angle_1_deg", unit: "°", default: 45.0, range: [45.0, 135.0], doc: "joint to the plane" },
-        Parameter { name: "angle_2_deg", unit: "°", default: 90.0, range: [45.0, 135.0], doc: "a second one" },
-        Parameter { name: "angle_3_deg", unit: "°", default: 120.0, range: [45.0, 135.0], doc: "a third one" },
-        Parameter { name: "brick", unit: "m", default: 0.21, range: [0.05, 1.0], doc: "length of the level bricks" },
-        Parameter { name: "ledge", unit: "", default: 5e-4, range: [0.0, 7e-4], doc: "that lets pass, over mesh size" },
-        Parameter { name: "step", unit: "", default: 0.01, range: [2e-3, 0.2], doc: "that holds, over mesh size" },
-        Parameter { name: "t", unit: "s", default: 0.5, range: [0.1, 0.7], doc: "time of sliding" },
-        Parameter { name: "mesh", unit: "m", default: 0.5, range: [0.2, 1.0], doc: "mesh size for blocks of 1 m" },
+        Parameter::new("a_deg", "°", 30.0, [10.0, 40.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 20.0, [0.0, 35.0], "friction, below a_deg"),
+        Parameter::new("angle_1_deg", "°", 45.0, [45.0, 135.0], "joint to the plane"),
+        Parameter::new("angle_2_deg", "°", 90.0, [45.0, 135.0], "a second one"),
+        Parameter::new("angle_3_deg", "°", 120.0, [45.0, 135.0], "a third one"),
+        Parameter::new("brick", "m", 0.21, [0.05, 1.0], "length of the level bricks"),
+        Parameter::new("ledge", "", 5e-4, [0.0, 7e-4], "that lets pass, over mesh size"),
+        Parameter::new("step", "", 0.01, [2e-3, 0.2], "that holds, over mesh size"),
+        Parameter::new("t", "s", 0.5, [0.1, 0.7], "time of sliding"),
+        Parameter::new("mesh", "m", 0.5, [0.2, 1.0], "mesh size for blocks of 1 m"),
     ],
     quick: true,
     implicit: false,
@@ -148,11 +148,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let areas: f64 = blocks.bodies.iter().map(|(_, area)| area).sum();
         let mean = slides.iter().zip(&blocks.bodies).map(|(slide, (_, area))| slide * area).sum::<f64>() / areas;
         let row = Row::new(format!("slide, {}", blocks.name), "m", mean, exact);
-        outcome.rows.push(row.within(Tolerance::Relative(5e-3), PUSH));
+        outcome.rows.push(row.relative(5e-3, PUSH));
         if slides.len() > 1 {
             let worst = slides.iter().map(|slide| (slide / exact - 1.0).abs()).fold(0.0, f64::max);
             let row = Row::new(format!("farthest from that over it, {}", blocks.name), "", worst, 0.0);
-            outcome.rows.push(row.within(Tolerance::AtMost(0.02), PUSH));
+            outcome.rows.push(row.at_most(0.02, PUSH));
         }
     }
     let ledge = setup.get("ledge") * size;
@@ -162,10 +162,10 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let reason = "half a per cent, and what the block loses when it climbs the ledge: its height times g·cos a over \
                   the acceleration";
     let row = Row::new("slide, ledge", "m", slides[0], exact);
-    outcome.rows.push(row.within(Tolerance::Absolute(5e-3 * exact + climb), reason));
+    outcome.rows.push(row.absolute(5e-3 * exact + climb, reason));
     let (slides, _) = Blocks::stepped("step", setup.get("step") * size).slides(setup)?;
     let reason = "the speed v with which it strikes can lift a block by v²/2g, and as far it can turn over its toe";
     let row = Row::new("farthest slide up to the step that holds", "m", slides[0], AWAY);
-    outcome.rows.push(row.within(Tolerance::Absolute(acceleration * AWAY / G), reason));
+    outcome.rows.push(row.absolute(acceleration * AWAY / G, reason));
     Ok(outcome)
 }

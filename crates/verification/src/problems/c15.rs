@@ -2,7 +2,7 @@
 
 use super::limit::bound_of;
 use crate::slope::{block_displacements, slope_text};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C15",
@@ -11,15 +11,9 @@ pub const PROBLEM: Problem = Problem {
              than it asks for, no equilibrium exists and the slope must move on; with more it must come to rest. \
              Catches blocks that are held where joints cross",
     parameters: &[
-        Parameter { name: "spacing", unit: "m", default: 6.4, range: [3.0, 30.0], doc: "spacing of both joint sets" },
-        Parameter {
-            name: "apart",
-            unit: "",
-            default: 0.07,
-            range: [0.02, 0.2],
-            doc: "tan φ below and above the limit",
-        },
-        Parameter { name: "t", unit: "s", default: 12.0, range: [2.0, 60.0], doc: "time to come to rest" },
+        Parameter::new("spacing", "m", 6.4, [3.0, 30.0], "spacing of both joint sets"),
+        Parameter::new("apart", "", 0.07, [0.02, 0.2], "tan φ below and above the limit"),
+        Parameter::new("t", "s", 12.0, [2.0, 60.0], "time to come to rest"),
     ],
     quick: true,
     implicit: false,
@@ -46,25 +40,21 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     for (name, sign) in [("below", -1.0), ("above", 1.0)] {
         let angle = (tangent * (1.0 + sign * setup.get("apart"))).atan().to_degrees();
         let points = farthest(setup, name, text(angle))?;
-        series.push(Series { name: format!("{angle:.2}°, {name} the limit"), points, marks: false });
+        series.push(Series::line(format!("{angle:.2}°, {name} the limit"), points));
     }
     let last = |points: &[[f64; 2]]| points[SAMPLES][1] - points[SAMPLES - SAMPLES / 10][1];
     let [below, above] = [last(&series[0].points), last(&series[1].points)];
     let reason = "a slope that moves on goes as far in every tenth of the time; one that comes to rest only settles";
     outcome.rows.extend([
         Row::new("way in the last tenth of the time, above the limit over below", "", above / below, 0.0)
-            .within(Tolerance::AtMost(0.05), reason)
+            .at_most(0.05, reason)
             .from(origin),
         Row::new("a thousandth of the spacing over the way below", "", 1e-3 * spacing / below, 0.0)
-            .within(Tolerance::AtMost(1.0), "below the limit the slope must move on")
+            .at_most(1.0, "below the limit the slope must move on")
             .from(origin),
     ]);
-    outcome.plots.push(Plot {
-        title: "Displacement of the block that goes farthest".into(),
-        axes: ["time (s)".into(), "displacement (m)".into()],
-        logarithmic: [false, true],
-        series,
-    });
+    let plot = Plot::new("Displacement of the block that goes farthest", ["time (s)", "displacement (m)"]);
+    outcome.plots.push(plot.with(series).logarithmic([false, true]));
     Ok(outcome)
 }
 

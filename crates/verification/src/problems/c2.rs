@@ -2,7 +2,7 @@
 
 use super::incline::{G, ledger_row, reduce, trial_plot};
 use crate::parts::{rock, turn};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C2",
@@ -10,24 +10,16 @@ pub const PROBLEM: Problem = Problem {
     source: "FoS = (c·A + W·cos a·tan φ)/(W·sin a); catches a wrong contact length, locked-in shear, a judge of \
              stability that takes elastic motion for failure or slow failure for rest",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 55.0], doc: "dip of the plane" },
-        Parameter { name: "length", unit: "m", default: 4.0, range: [0.5, 50.0], doc: "length along the plane" },
-        Parameter {
-            name: "height",
-            unit: "m",
-            default: 2.0,
-            range: [0.2, 20.0],
-            doc: "height above the plane, below length/tan a: no toppling",
-        },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
-        Parameter {
-            name: "phi_deg", unit: "°", default: 40.0, range: [1.0, 70.0], doc: "friction of the first block"
-        },
-        Parameter { name: "phi_c_deg", unit: "°", default: 35.0, range: [0.0, 60.0], doc: "friction with cohesion" },
-        Parameter { name: "cohesion", unit: "Pa", default: 20e3, range: [1.0, 1e6], doc: "cohesion" },
-        Parameter { name: "phi_weak_deg", unit: "°", default: 25.0, range: [1.0, 60.0], doc: "friction too small" },
-        Parameter { name: "young", unit: "Pa", default: 5e9, range: [1e8, 1e11], doc: "Young's modulus of the rock" },
-        Parameter { name: "mesh", unit: "", default: 0.45, range: [0.1, 1.0], doc: "mesh size over block height" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 55.0], "dip of the plane"),
+        Parameter::new("length", "m", 4.0, [0.5, 50.0], "length along the plane"),
+        Parameter::new("height", "m", 2.0, [0.2, 20.0], "height above the plane, below length/tan a: no toppling"),
+        Parameter::new("gamma", "N/m³", 25e3, [5e3, 5e4], "unit weight"),
+        Parameter::new("phi_deg", "°", 40.0, [1.0, 70.0], "friction of the first block"),
+        Parameter::new("phi_c_deg", "°", 35.0, [0.0, 60.0], "friction with cohesion"),
+        Parameter::new("cohesion", "Pa", 20e3, [1.0, 1e6], "cohesion"),
+        Parameter::new("phi_weak_deg", "°", 25.0, [1.0, 60.0], "friction too small"),
+        Parameter::new("young", "Pa", 5e9, [1e8, 1e11], "Young's modulus of the rock"),
+        Parameter::new("mesh", "", 0.45, [0.1, 1.0], "mesh size over block height"),
     ],
     quick: true,
     implicit: true,
@@ -88,7 +80,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let found = reduction.factor().unwrap_or(f64::NAN);
         let reason = "half of a bracket that is 0.2 % wide (0.5 % when quick), and contact lengths add up to 0.1 %";
         let row = Row::new(format!("factor of safety, {name}"), "", found, exact);
-        outcome.rows.push(row.within(Tolerance::Relative(5e-3), reason));
+        outcome.rows.push(row.relative(5e-3, reason));
         marks.push([phi.to_radians().tan(), found]);
         if reductions.is_empty() {
             outcome.plots.push(trial_plot("Trials, friction alone", &reduction, exact));
@@ -101,20 +93,14 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
 }
 
 fn curves(a: f64, cohesion: f64, long: f64, weight: f64, marks: Vec<[f64; 2]>) -> Plot {
-    let line = |name: &str, cohesion: f64| {
+    let line = |cohesion: f64| -> Vec<[f64; 2]> {
         let points = (0..=60).map(|k| f64::from(k) / 60.0).map(|t| [t, exact(a, t.atan(), cohesion, long, weight)]);
-        Series { name: name.to_owned(), points: points.collect(), marks: false }
+        points.collect()
     };
-    Plot {
-        title: "Factor of safety of a block".to_owned(),
-        axes: ["tan φ".to_owned(), "factor of safety".to_owned()],
-        logarithmic: [false, false],
-        series: vec![
-            line("exact, no cohesion", 0.0),
-            line("exact, with cohesion", cohesion),
-            Series { name: "computed".to_owned(), points: marks, marks: true },
-        ],
-    }
+    Plot::new("Factor of safety of a block", ["tan φ", "factor of safety"])
+        .line("exact, no cohesion", line(0.0))
+        .line("exact, with cohesion", line(cohesion))
+        .marks("computed", marks)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use enmm::model::tables::{BlockId, VertexEdge};
 use enmm::model::{Simulation, StepReport};
 
 use crate::parts::turn;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C3",
@@ -14,17 +14,13 @@ pub const PROBLEM: Problem = Problem {
              cos a·tan φ1), both while the upper block is the faster one alone; catches wrong friction by joint and \
              wrong forces between moving blocks",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 45.0], doc: "dip of the plane" },
-        Parameter {
-            name: "phi_lower_deg", unit: "°", default: 40.0, range: [0.0, 60.0], doc: "friction, lower block"
-        },
-        Parameter {
-            name: "phi_upper_deg", unit: "°", default: 10.0, range: [0.0, 60.0], doc: "friction, upper block"
-        },
-        Parameter { name: "length", unit: "m", default: 1.6, range: [1.2, 10.0], doc: "length of a block, 1 m high" },
-        Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e9, 1e12], doc: "Young's modulus" },
-        Parameter { name: "mesh", unit: "m", default: 0.6, range: [0.1, 1.0], doc: "mesh size" },
-        Parameter { name: "t", unit: "s", default: 0.45, range: [0.2, 0.6], doc: "time of sliding" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 45.0], "dip of the plane"),
+        Parameter::new("phi_lower_deg", "°", 40.0, [0.0, 60.0], "friction, lower block"),
+        Parameter::new("phi_upper_deg", "°", 10.0, [0.0, 60.0], "friction, upper block"),
+        Parameter::new("length", "m", 1.6, [1.2, 10.0], "length of a block, 1 m high"),
+        Parameter::new("young", "Pa", 50e9, [1e9, 1e12], "Young's modulus"),
+        Parameter::new("mesh", "m", 0.6, [0.1, 1.0], "mesh size"),
+        Parameter::new("t", "s", 0.45, [0.2, 0.6], "time of sliding"),
     ],
     quick: true,
     implicit: true,
@@ -52,18 +48,10 @@ fn exact(slope: f64, lower: f64, upper: f64) -> ([f64; 2], Option<f64>) {
 fn case(setup: &Setup) -> String {
     let [slope, length] = ["a_deg", "length"].map(|name| setup.get(name));
     let end = 2.0 * length + 0.5 * G * setup.get("t").powi(2) + 1.0;
-    let outline = [
-        [-1.0, -1.2],
-        [end, -1.2],
-        [end, -STEP],
-        [2.0 * length, -STEP],
-        [2.0 * length, 1.0 - STEP],
-        [length, 1.0 - STEP],
-        [length, 1.0],
-        [0.0, 1.0],
-        [0.0, 0.0],
-        [-1.0, 0.0],
-    ];
+    let base = [[-1.0, -1.2], [end, -1.2], [end, -STEP]];
+    let lower = [[2.0 * length, -STEP], [2.0 * length, 1.0 - STEP], [length, 1.0 - STEP]];
+    let upper = [[length, 1.0], [0.0, 1.0], [0.0, 0.0], [-1.0, 0.0]];
+    let outline = [&base[..], &lower, &upper].concat();
     let joint = |a: [f64; 2], b: [f64; 2], law: &str| {
         format!("[[joint]]\npoints = {:?}\nlaw = \"{law}\"\n", turn(&[a, b], -slope))
     };
@@ -154,31 +142,22 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let tolerance = if accelerations[k] > 0.0 { Tolerance::Relative(1e-4) } else { Tolerance::AtMost(1e-4) };
         let reason =
             "second difference of three places, free of the elastic start; the blocks turn a little on the step";
-        rows.push(
-            Row::new(format!("acceleration, {name} block"), "m/s²", found, accelerations[k]).within(tolerance, reason),
-        );
+        let row = Row::new(format!("acceleration, {name} block"), "m/s²", found, accelerations[k]);
+        rows.push(row.within(tolerance, reason));
     }
     if let Some(push) = push {
         let tolerance = if push > 0.0 { Tolerance::Relative(1e-3) } else { Tolerance::AtMost(1e-2) };
         let reason = "mean over two thirds of the time of a force that swings with waves in the blocks";
-        rows.push(
-            Row::new("push between the blocks per unit mass", "m/s²", slide.push, push).within(tolerance, reason),
-        );
+        let row = Row::new("push between the blocks per unit mass", "m/s²", slide.push, push);
+        rows.push(row.within(tolerance, reason));
     }
     rows.push(Row::ledger(&slide.report));
     let [low, high] = slide.curves;
     let exact: Vec<[f64; 2]> = low.iter().map(|p| [p[0], 0.5 * accelerations[0] * p[0] * p[0]]).collect();
-    let series = |name: &str, points, marks| Series { name: name.into(), points, marks };
-    let plot = Plot {
-        title: "Way down the plane".into(),
-        axes: ["time (s)".into(), "way (m)".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            series("½·a·t², lower", exact, false),
-            series("lower block", low, true),
-            series("upper block", high, true),
-        ],
-    };
+    let plot = Plot::new("Way down the plane", ["time (s)", "way (m)"])
+        .line("½·a·t², lower", exact)
+        .marks("lower block", low)
+        .marks("upper block", high);
     Ok(Outcome { rows, plots: vec![plot] })
 }
 

@@ -1,7 +1,7 @@
 //! C4: Newmark's block under a pulse of its base.
 
 use super::slider::Slider;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C4",
@@ -10,20 +10,12 @@ pub const PROBLEM: Problem = Problem {
              constant deceleration; flat, and down an incline. Catches wrong impulses of jumps, inertia forces that \
              change no normal force, and friction that lags",
     parameters: &[
-        Parameter {
-            name: "gravity", unit: "m/s²", default: 9.81, range: [0.1, 100.0], doc: "acceleration of gravity"
-        },
-        Parameter { name: "pulse", unit: "g", default: 0.5, range: [0.05, 0.9], doc: "base acceleration over g" },
-        Parameter { name: "time", unit: "s", default: 0.5, range: [0.05, 1.0], doc: "length of the pulse" },
-        Parameter { name: "resistance", unit: "g", default: 0.2, range: [0.05, 0.6], doc: "friction on the flat base" },
-        Parameter { name: "a_deg", unit: "°", default: 20.0, range: [1.0, 40.0], doc: "dip of the incline" },
-        Parameter {
-            name: "phi_deg",
-            unit: "°",
-            default: 30.0,
-            range: [5.0, 50.0],
-            doc: "friction angle on the incline",
-        },
+        Parameter::new("gravity", "m/s²", 9.81, [0.1, 100.0], "acceleration of gravity"),
+        Parameter::new("pulse", "g", 0.5, [0.05, 0.9], "base acceleration over g"),
+        Parameter::new("time", "s", 0.5, [0.05, 1.0], "length of the pulse"),
+        Parameter::new("resistance", "g", 0.2, [0.05, 0.6], "friction on the flat base"),
+        Parameter::new("a_deg", "°", 20.0, [1.0, 40.0], "dip of the incline"),
+        Parameter::new("phi_deg", "°", 30.0, [5.0, 50.0], "friction angle on the incline"),
     ],
     quick: true,
     implicit: true,
@@ -69,11 +61,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
                       an offset of some σ/√(Eρ)";
         outcome.rows.extend([
             Row::new(format!("{name}: speed as the pulse ends"), "m/s", speed, exact.speed)
-                .within(Tolerance::Absolute(0.01 * exact.speed + 1e-6), reason),
+                .absolute(0.01 * exact.speed + 1e-6, reason),
             Row::new(format!("{name}: slip"), "m", slide.way_at(duration), exact.slip)
-                .within(Tolerance::Absolute(0.01 * exact.slip + 1e-6), reason),
+                .absolute(0.01 * exact.slip + 1e-6, reason),
             Row::new(format!("{name}: time of the stop"), "s", slide.stop(1e-4 * exact.slip), exact.stop)
-                .within(Tolerance::Relative(0.02), "read where the way is within 1e-4 of its end: 1 % of the braking"),
+                .relative(0.02, "read where the way is within 1e-4 of its end: 1 % of the braking"),
             Row::ledger(&slide.last),
         ]);
         let gain = exact.speed / time;
@@ -83,19 +75,11 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             if t < time { 0.5 * gain * t * t } else { exact.slip - 0.5 * loss * rest * rest }
         };
         let points = slide.points();
-        outcome.plots.push(Plot {
-            title: format!("C4, {name}: slip under a pulse of {pulse} g for {time} s"),
-            axes: ["time (s)".into(), "slip (m)".into()],
-            series: vec![
-                Series {
-                    name: "exact".into(),
-                    points: points.iter().map(|p| [p[0], way(p[0])]).collect(),
-                    marks: false,
-                },
-                Series { name: "computed".into(), points, marks: true },
-            ],
-            ..Plot::default()
-        });
+        outcome.plots.push(
+            Plot::new(format!("C4, {name}: slip under a pulse of {pulse} g for {time} s"), ["time (s)", "slip (m)"])
+                .line("exact", points.iter().map(|p| [p[0], way(p[0])]).collect())
+                .marks("computed", points),
+        );
     }
     Ok(outcome)
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::newmark::{Sliding, way_at};
 use super::slider::Slider;
 use super::strip::rows;
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C5",
@@ -14,20 +14,18 @@ pub const PROBLEM: Problem = Problem {
              block; two inclines on which it slides down, and a flat base on which it slides both ways. Catches slip \
              that starts or stops late, normal forces without the base's part, and drift",
     parameters: &[
-        Parameter {
-            name: "gravity", unit: "m/s²", default: 9.81, range: [0.1, 100.0], doc: "acceleration of gravity"
-        },
-        Parameter { name: "a_deg", unit: "°", default: 20.0, range: [0.0, 40.0], doc: "dip, first incline" },
-        Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [5.0, 50.0], doc: "friction, both inclines" },
-        Parameter { name: "a0", unit: "g", default: 0.5, range: [0.05, 0.9], doc: "amplitude, first incline" },
-        Parameter { name: "f", unit: "Hz", default: 2.0, range: [0.2, 20.0], doc: "frequency, first incline" },
-        Parameter { name: "a2_deg", unit: "°", default: 22.6, range: [0.0, 40.0], doc: "dip, second incline" },
-        Parameter { name: "a02", unit: "g", default: 0.28, range: [0.05, 0.9], doc: "amplitude, second incline" },
-        Parameter { name: "f2", unit: "Hz", default: 2.66, range: [0.2, 20.0], doc: "frequency, second incline" },
-        Parameter { name: "mu", unit: "", default: 0.3, range: [0.05, 0.8], doc: "friction coefficient, flat" },
-        Parameter { name: "a03", unit: "g", default: 0.5, range: [0.05, 0.9], doc: "amplitude, flat" },
-        Parameter { name: "f3", unit: "Hz", default: 1.0, range: [0.2, 20.0], doc: "frequency, flat" },
-        Parameter { name: "cycles", unit: "", default: 5.0, range: [1.0, 20.0], doc: "cycles on the inclines" },
+        Parameter::new("gravity", "m/s²", 9.81, [0.1, 100.0], "acceleration of gravity"),
+        Parameter::new("a_deg", "°", 20.0, [0.0, 40.0], "dip, first incline"),
+        Parameter::new("phi_deg", "°", 30.0, [5.0, 50.0], "friction, both inclines"),
+        Parameter::new("a0", "g", 0.5, [0.05, 0.9], "amplitude, first incline"),
+        Parameter::new("f", "Hz", 2.0, [0.2, 20.0], "frequency, first incline"),
+        Parameter::new("a2_deg", "°", 22.6, [0.0, 40.0], "dip, second incline"),
+        Parameter::new("a02", "g", 0.28, [0.05, 0.9], "amplitude, second incline"),
+        Parameter::new("f2", "Hz", 2.66, [0.2, 20.0], "frequency, second incline"),
+        Parameter::new("mu", "", 0.3, [0.05, 0.8], "friction coefficient, flat"),
+        Parameter::new("a03", "g", 0.5, [0.05, 0.9], "amplitude, flat"),
+        Parameter::new("f3", "Hz", 1.0, [0.2, 20.0], "frequency, flat"),
+        Parameter::new("cycles", "", 5.0, [1.0, 20.0], "cycles on the inclines"),
     ],
     quick: true,
     implicit: true,
@@ -96,20 +94,13 @@ impl Shake {
         }
         outcome.rows.extend(rows.into_iter().map(|(quantity, unit, computed, exact, share)| {
             let row = Row::new(format!("{name}: {quantity}"), unit, computed, exact).from(origin);
-            row.within(Tolerance::Absolute(share * exact.abs() + 1e-6), reason)
+            row.absolute(share * exact.abs() + 1e-6, reason)
         }));
         outcome.rows.push(Row::ledger(&slide.last));
         let every = (path.len() / 300).max(1);
         let line = path.iter().step_by(every).map(|s| [s.time, s.way]).collect();
-        outcome.plots.push(Plot {
-            title: format!("C5, {name}: slip under {peak} g at {frequency} Hz"),
-            axes: ["time (s)".into(), "slip (m)".into()],
-            series: vec![
-                Series { name: "rigid block".into(), points: line, marks: false },
-                Series { name: "computed".into(), points: slide.points(), marks: true },
-            ],
-            ..Plot::default()
-        });
+        let plot = Plot::new(format!("C5, {name}: slip under {peak} g at {frequency} Hz"), ["time (s)", "slip (m)"]);
+        outcome.plots.push(plot.line("rigid block", line).marks("computed", slide.points()));
         Ok(())
     }
 }

@@ -2,8 +2,8 @@
 
 use enmm::model::Simulation;
 
-use super::block::{Block, DENSITY, Fate, G, advance, bisect};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, text};
+use super::block::{Block, Fate, G, advance, bisect};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, text};
 
 pub const PROBLEM: Problem = Problem {
     id: "C6",
@@ -16,44 +16,26 @@ pub const PROBLEM: Problem = Problem {
              which changes none of the limits. Catches wrong friction at a corner, corners that slip or stick falsely, \
              and wrong inertia of small blocks.",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 50.0], doc: "dip of the plane" },
-        Parameter {
-            name: "k",
-            unit: "",
-            default: 0.3,
-            range: [0.05, 1.0],
-            doc: "width over height of the block whose angular acceleration is taken; at most 0.95·tan a",
-        },
-        Parameter {
-            name: "k_low",
-            unit: "",
-            default: 0.2,
-            range: [0.05, 1.0],
-            doc: "least width over height of the blocks whose limit is sought",
-        },
-        Parameter {
-            name: "k_high",
-            unit: "",
-            default: 0.5,
-            range: [0.05, 1.1],
-            doc: "greatest such; at most 0.95·tan a",
-        },
-        Parameter { name: "k_count", unit: "", default: 4.0, range: [1.0, 12.0], doc: "number of such blocks" },
-        Parameter { name: "h", unit: "m", default: 1.0, range: [0.1, 50.0], doc: "height of the block" },
-        Parameter {
-            name: "stiffness",
-            unit: "",
-            default: 1e7,
-            range: [3e6, 1e9],
-            doc: "Young's modulus over ρ·g·h; the formulas are those of rigid blocks",
-        },
-        Parameter {
-            name: "mesh",
-            unit: "",
-            default: 0.45,
-            range: [0.15, 1.5],
-            doc: "side of the mesh over the height of the block",
-        },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 50.0], "dip of the plane"),
+        Parameter::new(
+            "k",
+            "",
+            0.3,
+            [0.05, 1.0],
+            "width over height of the block whose angular acceleration is taken; at most 0.95·tan a",
+        ),
+        Parameter::new("k_low", "", 0.2, [0.05, 1.0], "least width over height of the blocks whose limit is sought"),
+        Parameter::new("k_high", "", 0.5, [0.05, 1.1], "greatest such; at most 0.95·tan a"),
+        Parameter::new("k_count", "", 4.0, [1.0, 12.0], "number of such blocks"),
+        Parameter::new("h", "m", 1.0, [0.1, 50.0], "height of the block"),
+        Parameter::new(
+            "stiffness",
+            "",
+            1e7,
+            [3e6, 1e9],
+            "Young's modulus over ρ·g·h; the formulas are those of rigid blocks",
+        ),
+        Parameter::new("mesh", "", 0.45, [0.15, 1.5], "side of the mesh over the height of the block"),
     ],
     quick: true,
     implicit: true,
@@ -126,11 +108,10 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
             computed,
             critical_friction(k, dip).to_degrees(),
         );
-        rows.push(row.within(
-            Tolerance::Absolute(0.1),
-            "slip is seen from 2e-3 of the kinetic energy on, 0.01° below the limit where the \
-             block is slender; the tilt of 1e-3 rad at the time of judgement moves the limit by \
-             as much; the rest is the elastic toe",
+        rows.push(row.absolute(
+            0.1,
+            "slip is seen from 2e-3 of the kinetic energy on, 0.01° below the limit where the block is slender; the \
+             tilt of 1e-3 rad at the time of judgement moves the limit by as much; the rest is the elastic toe",
         ));
     }
     let (row, region) = region(setup, &found)?;
@@ -161,18 +142,8 @@ fn ratios(setup: &Setup) -> Result<Vec<f64>, Trouble> {
 }
 
 fn block(setup: &Setup, k: f64, friction: f64) -> Block {
-    let h = setup.get("h");
-    Block {
-        base: k * h,
-        height: h,
-        dip: setup.get("a_deg").to_radians(),
-        tilt: 0.0,
-        friction_deg: friction.to_degrees(),
-        young: setup.get("stiffness") * DENSITY * G * h,
-        mesh: setup.get("mesh") * h,
-        horizontal: 0.0,
-        ramp: RAMP * (h / G).sqrt(),
-    }
+    let (h, dip) = (setup.get("h"), setup.get("a_deg").to_radians());
+    Block { dip, friction_deg: friction.to_degrees(), ..Block::level(setup, [k * h, h], RAMP) }
 }
 
 /// The friction angle (rad) from which on the toe does not slip, by bisection.
@@ -229,29 +200,24 @@ fn region(setup: &mut Setup, limits: &[[f64; 2]]) -> Result<(Row, Plot), Trouble
         }
     }
     let row = Row::new(format!("blocks of {} that move otherwise", points.len()), "", wrong as f64, 0.0);
-    let row = row.within(Tolerance::AtMost(0.0), "all are more than 0.015 in k and 0.86° in φ away from a limit");
+    let row = row.at_most(0.0, "all are more than 0.015 in k and 0.86° in φ away from a limit");
     Ok((row, diagram(dip, k_most, friction_most, &points, limits)))
 }
 
 fn diagram(dip: f64, k_most: f64, friction_most: f64, points: &[(Kind, [f64; 2])], limits: &[[f64; 2]]) -> Plot {
-    let line = |name: &str, points: Vec<[f64; 2]>| Series { name: name.to_owned(), points, marks: false };
     let ks = |from: f64, to: f64| (0..=60).map(move |i| from + (to - from) * f64::from(i) / 60.0);
     let steep = ks(0.0, dip.tan()).map(|k| [k, critical_friction(k, dip).to_degrees()]).collect();
     let flat = ks(0.0, dip.tan()).map(|k| [k, k.atan().to_degrees()]).collect();
     let (a, t) = (dip.to_degrees(), dip.tan());
     let stand = vec![[k_most, a], [t, a], [t, friction_most.to_degrees()]];
-    let mut series = vec![line("φ = φc(k)", steep), line("k = tan φ", flat), line("limits of standing", stand)];
+    let title = format!("Stands, slides, topples on a plane of {}°", text::number(a, 4));
+    let mut plot = Plot::new(title, ["k = b/h", "friction angle φ [°]"]);
+    plot = plot.line("φ = φc(k)", steep).line("k = tan φ", flat).line("limits of standing", stand);
     for kind in Kind::ALL {
         let places = points.iter().filter(|p| p.0 == kind).map(|p| p.1).collect();
-        series.push(Series { name: format!("computed: {}", kind.name()), points: places, marks: true });
+        plot = plot.marks(format!("computed: {}", kind.name()), places);
     }
-    series.push(Series { name: "computed: φc by bisection".to_owned(), points: limits.to_vec(), marks: true });
-    Plot {
-        title: format!("Stands, slides, topples on a plane of {}°", text::number(a, 4)),
-        axes: ["k = b/h".to_owned(), "friction angle φ [°]".to_owned()],
-        logarithmic: [false; 2],
-        series,
-    }
+    plot.marks("computed: φc by bisection", limits.to_vec())
 }
 
 /// The angular acceleration of a block that does not slip, from its spin over four windows, taken back to no turn.
@@ -280,27 +246,17 @@ fn turning(setup: &mut Setup) -> Result<(Vec<Row>, Plot), Trouble> {
             start,
             angular_acceleration(k * h, h, dip),
         )
-        .within(Tolerance::Relative(5e-3), reason),
-        Row::new(format!("angle after {:.3} s, k = {k}", last.time), "rad", last.turned, end).within(
-            Tolerance::Relative(3e-3),
+        .relative(5e-3, reason),
+        Row::new(format!("angle after {:.3} s, k = {k}", last.time), "rad", last.turned, end).relative(
+            3e-3,
             "the elastic toe, which makes the block lean and roll a little; the exact angle is \
              that of the rigid block under growing gravity",
         ),
         Row::ledger(&report),
     ];
-    let plot = Plot {
-        title: format!("Angle of a toppling block, k = {k}"),
-        axes: ["time [s]".to_owned(), "angle [rad]".to_owned()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "rigid block".to_owned(), points: exact, marks: false },
-            Series {
-                name: "computed".to_owned(),
-                points: fates.iter().map(|f| [f.time, f.turned]).collect(),
-                marks: true,
-            },
-        ],
-    };
+    let plot = Plot::new(format!("Angle of a toppling block, k = {k}"), ["time [s]", "angle [rad]"])
+        .line("rigid block", exact)
+        .marks("computed", fates.iter().map(|f| [f.time, f.turned]).collect());
     Ok((rows, plot))
 }
 

@@ -2,8 +2,8 @@
 
 use enmm::model::Simulation;
 
-use super::block::{Block, DENSITY, Fate, G, advance, bisect};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use super::block::{Block, Fate, G, advance, bisect};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C7",
@@ -15,14 +15,12 @@ pub const PROBLEM: Problem = Problem {
              the spin after the impact over that before as 1 − 1.5·sin²α. Catches corners that stick, wrong inertia, \
              impacts that bounce.",
     parameters: &[
-        Parameter { name: "b", unit: "m", default: 0.2, range: [0.02, 5.0], doc: "width of the block; at most 0.5·h" },
-        Parameter { name: "h", unit: "m", default: 1.0, range: [0.1, 50.0], doc: "height of the block" },
-        Parameter { name: "tilt", unit: "", default: 0.5, range: [0.1, 0.9], doc: "tilt at release over the critical" },
-        Parameter { name: "phi_deg", unit: "°", default: 60.0, range: [40.0, 80.0], doc: "friction angle; no slip" },
-        Parameter {
-            name: "stiffness", unit: "", default: 1e7, range: [3e6, 1e9], doc: "Young's modulus over ρ·g·h"
-        },
-        Parameter { name: "mesh", unit: "", default: 0.8, range: [0.15, 1.5], doc: "side of the mesh over the height" },
+        Parameter::new("b", "m", 0.2, [0.02, 5.0], "width of the block; at most 0.5·h"),
+        Parameter::new("h", "m", 1.0, [0.1, 50.0], "height of the block"),
+        Parameter::new("tilt", "", 0.5, [0.1, 0.9], "tilt at release over the critical"),
+        Parameter::new("phi_deg", "°", 60.0, [40.0, 80.0], "friction angle; no slip"),
+        Parameter::new("stiffness", "", 1e7, [3e6, 1e9], "Young's modulus over ρ·g·h"),
+        Parameter::new("mesh", "", 0.8, [0.15, 1.5], "side of the mesh over the height"),
     ],
     quick: true,
     implicit: true,
@@ -81,28 +79,15 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let uplift = uplift(setup)?;
     let reason = "a block is seen to tip when it has turned by 0.05·α in the time allowed: from 1 + 0.05/(cosh pt − 1) \
                   times the limit on, pt = 4.5";
-    let mut rows = vec![
-        Row::new("horizontal acceleration of uplift, ah/g", "", uplift, b / h)
-            .within(Tolerance::Relative(5e-3), reason),
-    ];
+    let mut rows = vec![Row::new("horizontal acceleration of uplift, ah/g", "", uplift, b / h).relative(5e-3, reason)];
     let (rocking, plot) = rocking(setup)?;
     rows.extend(rocking);
     Ok(Outcome { rows, plots: vec![plot] })
 }
 
 fn block(setup: &Setup) -> Block {
-    let h = setup.get("h");
-    Block {
-        base: setup.get("b"),
-        height: h,
-        dip: 0.0,
-        tilt: 0.0,
-        friction_deg: setup.get("phi_deg"),
-        young: setup.get("stiffness") * DENSITY * G * h,
-        mesh: setup.get("mesh") * h,
-        horizontal: 0.0,
-        ramp: RAMP * (h / G).sqrt(),
-    }
+    let [b, h, friction_deg] = ["b", "h", "phi_deg"].map(|name| setup.get(name));
+    Block { friction_deg, ..Block::level(setup, [b, h], RAMP) }
 }
 
 /// The horizontal acceleration (in g) from which on the block tips, by bisection.
@@ -170,8 +155,8 @@ fn rocking(setup: &mut Setup) -> Result<(Vec<Row>, Plot), Trouble> {
     // Under a force that grows over a short time a body is half of that time late.
     let computed = 4.0 * (impact - 0.5 * block.ramp);
     let rows = vec![
-        Row::new("period, four times the way down", "s", computed, exact).within(
-            Tolerance::Relative(5e-3),
+        Row::new("period, four times the way down", "s", computed, exact).relative(
+            5e-3,
             "the elastic corner takes part of the start; half the time of growing gravity is \
              taken off, exact to its square",
         ),
@@ -188,15 +173,12 @@ fn rocking(setup: &mut Setup) -> Result<(Vec<Row>, Plot), Trouble> {
         ledger,
     ];
     let way_down = fall(shape, tilt, exact).into_iter().map(|[t, angle]| [t + 0.5 * block.ramp, angle]).collect();
-    let plot = Plot {
-        title: format!("Tilt of a block released at {} of the critical tilt", setup.get("tilt")),
-        axes: ["time [s]".to_owned(), "tilt [rad]".to_owned()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "rigid block, to the impact".to_owned(), points: way_down, marks: false },
-            Series { name: "computed".to_owned(), points: path, marks: true },
-        ],
-    };
+    let plot = Plot::new(
+        format!("Tilt of a block released at {} of the critical tilt", setup.get("tilt")),
+        ["time [s]", "tilt [rad]"],
+    )
+    .line("rigid block, to the impact", way_down)
+    .marks("computed", path);
     Ok((rows, plot))
 }
 

@@ -2,7 +2,7 @@
 
 use super::incline::{ledger_row, reduce, trial_plot};
 use super::toppling::{Columns, Mode};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, Values};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble, Values};
 use enmm_stability::strength_reduction::Reduction;
 
 pub const PROBLEM: Problem = Problem {
@@ -12,39 +12,21 @@ pub const PROBLEM: Problem = Problem {
              down; the force that holds the toe, the friction at which it vanishes, the modes of the columns; catches \
              wrong corner contacts, moments and friction on turning faces",
     parameters: &[
-        Parameter { name: "columns", unit: "", default: 16.0, range: [3.0, 40.0], doc: "number of columns" },
-        Parameter {
-            name: "crest",
-            unit: "",
-            default: 10.0,
-            range: [2.0, 39.0],
-            doc: "column at the crest, from the toe",
-        },
-        Parameter { name: "width", unit: "m", default: 10.0, range: [1.0, 50.0], doc: "width of a column" },
-        Parameter { name: "step", unit: "m", default: 1.0, range: [0.1, 10.0], doc: "step of the base" },
-        Parameter {
-            name: "below",
-            unit: "m",
-            default: 5.0,
-            range: [0.5, 50.0],
-            doc: "a1, rise of heads below the crest",
-        },
-        Parameter {
-            name: "above",
-            unit: "m",
-            default: 5.0,
-            range: [0.0, 50.0],
-            doc: "a2, fall of heads above the crest",
-        },
-        Parameter { name: "base_deg", unit: "°", default: 30.0, range: [10.0, 50.0], doc: "dip of the base" },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [1e4, 4e4], doc: "unit weight" },
-        Parameter { name: "tan_1", unit: "", default: 0.65, range: [0.1, 0.95], doc: "tan φ, first holding force" },
-        Parameter { name: "tan_2", unit: "", default: 0.70, range: [0.1, 0.95], doc: "tan φ, second holding force" },
-        Parameter { name: "tan_3", unit: "", default: 0.75, range: [0.1, 0.95], doc: "tan φ, third holding force" },
-        Parameter { name: "tan_4", unit: "", default: 0.80, range: [0.1, 0.95], doc: "tan φ that needs no force" },
-        Parameter { name: "phi_deg", unit: "°", default: 45.0, range: [10.0, 60.0], doc: "friction for the factor" },
-        Parameter { name: "young", unit: "Pa", default: 2e10, range: [1e9, 2e11], doc: "Young's modulus of the rock" },
-        Parameter { name: "mesh", unit: "", default: 0.4, range: [0.1, 1.0], doc: "mesh size over column width" },
+        Parameter::new("columns", "", 16.0, [3.0, 40.0], "number of columns"),
+        Parameter::new("crest", "", 10.0, [2.0, 39.0], "column at the crest, from the toe"),
+        Parameter::new("width", "m", 10.0, [1.0, 50.0], "width of a column"),
+        Parameter::new("step", "m", 1.0, [0.1, 10.0], "step of the base"),
+        Parameter::new("below", "m", 5.0, [0.5, 50.0], "a1, rise of heads below the crest"),
+        Parameter::new("above", "m", 5.0, [0.0, 50.0], "a2, fall of heads above the crest"),
+        Parameter::new("base_deg", "°", 30.0, [10.0, 50.0], "dip of the base"),
+        Parameter::new("gamma", "N/m³", 25e3, [1e4, 4e4], "unit weight"),
+        Parameter::new("tan_1", "", 0.65, [0.1, 0.95], "tan φ, first holding force"),
+        Parameter::new("tan_2", "", 0.70, [0.1, 0.95], "tan φ, second holding force"),
+        Parameter::new("tan_3", "", 0.75, [0.1, 0.95], "tan φ, third holding force"),
+        Parameter::new("tan_4", "", 0.80, [0.1, 0.95], "tan φ that needs no force"),
+        Parameter::new("phi_deg", "°", 45.0, [10.0, 60.0], "friction for the factor"),
+        Parameter::new("young", "Pa", 2e10, [1e9, 2e11], "Young's modulus of the rock"),
+        Parameter::new("mesh", "", 0.4, [0.1, 1.0], "mesh size over column width"),
     ],
     quick: true,
     implicit: false,
@@ -99,7 +81,7 @@ fn factor(setup: &mut Setup, columns: &Columns, outcome: &mut Outcome) -> Result
     let exact = f64::from(u8::from(columns.equilibrium(free).force == 0.0));
     let stands = f64::from(u8::from(tangent / free <= reduction.low.unwrap_or(0.0)));
     let name = format!("whether the slope stands at tan φ = {free}");
-    outcome.rows.push(Row::new(name, "", stands, exact).within(Tolerance::Absolute(0.0), "yes or no"));
+    outcome.rows.push(Row::new(name, "", stands, exact).absolute(0.0, "yes or no"));
     if setup.values == Values::of(&PROBLEM) {
         let row = Row::new("tan φ at the limit, published", "", tangent / factor, 0.7855);
         let published = Origin::Published("Goodman and Bray 1976, as handed down with the problem");
@@ -123,7 +105,7 @@ fn modes(columns: &Columns, reduction: &Reduction, limit: f64) -> Vec<Row> {
     let count = |modes: &[Mode], mode: Mode| modes.iter().filter(|m| **m == mode).count() as f64;
     let row = |mode: Mode| {
         Row::new(name(mode), "", count(&found, mode), count(&exact, mode))
-            .within(Tolerance::Absolute(1.0), "a column between two modes does a little of both")
+            .absolute(1.0, "a column between two modes does a little of both")
     };
     [Mode::Stable, Mode::Topples, Mode::Slides].map(row).into()
 }
@@ -160,18 +142,14 @@ fn holding(setup: &mut Setup, columns: &Columns, outcome: &mut Outcome) -> Resul
         let reduction = reduce(setup, &format!("held_{k}"), columns.text(phi) + &load + STAGE)?;
         let found = phi.to_radians().tan() / reduction.factor().unwrap_or(f64::NAN);
         let name = format!("tan φ at the limit under {:.2} kN/m at the toe", force / 1e3);
-        outcome.rows.push(Row::new(name, "", found, tangent).within(Tolerance::Relative(0.02), ELASTIC));
+        outcome.rows.push(Row::new(name, "", found, tangent).relative(0.02, ELASTIC));
         outcome.rows.push(ledger_row(&[&reduction]));
         marks.push([found, force / 1e3]);
     }
     let free = setup.get("tan_4");
     let exact = (0..=100).map(|k| setup.get("tan_1") + (free - setup.get("tan_1")) * f64::from(k) / 100.0);
     let exact = exact.map(|t| [t, columns.equilibrium(t).force / 1e3]).collect();
-    let series = vec![
-        Series { name: "exact".to_owned(), points: exact, marks: false },
-        Series { name: "computed limits".to_owned(), points: marks, marks: true },
-    ];
-    let axes = ["tan φ".to_owned(), "force that holds the toe (kN/m)".to_owned()];
-    outcome.plots.push(Plot { title: "Holding force".to_owned(), axes, logarithmic: [false; 2], series });
+    let plot = Plot::new("Holding force", ["tan φ", "force that holds the toe (kN/m)"]);
+    outcome.plots.push(plot.line("exact", exact).marks("computed limits", marks));
     Ok(())
 }

@@ -3,7 +3,7 @@
 use super::incline::{factor_row, ledger_row, reduce, trial_plot};
 use super::plane_slide::PlaneSlide;
 use crate::parts::dynamic;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "C9",
@@ -12,25 +12,19 @@ pub const PROBLEM: Problem = Problem {
              V sin ψ)·tan φ)/(W(sin ψ + k cos ψ) + V cos ψ), U = ½γw·zw·A, V = ½γw·zw²; catches wrong pressure in \
              joints, body loads, cohesion lost at the toe or the crack",
     parameters: &[
-        Parameter { name: "height", unit: "m", default: 60.0, range: [5.0, 500.0], doc: "height of the slope" },
-        Parameter { name: "crack", unit: "m", default: 14.0, range: [0.0, 100.0], doc: "depth of the tension crack" },
-        Parameter { name: "face_deg", unit: "°", default: 50.0, range: [20.0, 80.0], doc: "dip of the face" },
-        Parameter { name: "plane_deg", unit: "°", default: 35.0, range: [10.0, 70.0], doc: "dip of the plane" },
-        Parameter { name: "cohesion", unit: "Pa", default: 100e3, range: [0.0, 1e7], doc: "cohesion of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 35.0, range: [1.0, 70.0], doc: "friction of the plane" },
-        Parameter { name: "gamma", unit: "N/m³", default: 26.5e3, range: [1e4, 4e4], doc: "unit weight of the rock" },
-        Parameter { name: "gamma_w", unit: "N/m³", default: 9.81e3, range: [5e3, 2e4], doc: "unit weight of water" },
-        Parameter { name: "water_half", unit: "m", default: 7.0, range: [0.1, 100.0], doc: "lower water in the crack" },
-        Parameter {
-            name: "water_full",
-            unit: "m",
-            default: 14.0,
-            range: [0.1, 100.0],
-            doc: "higher water in the crack",
-        },
-        Parameter { name: "kh", unit: "", default: 0.08, range: [0.0, 0.5], doc: "seismic coefficient" },
-        Parameter { name: "young", unit: "Pa", default: 5e10, range: [1e9, 2e11], doc: "Young's modulus of the rock" },
-        Parameter { name: "mesh", unit: "", default: 0.13, range: [0.02, 0.3], doc: "mesh size over height" },
+        Parameter::new("height", "m", 60.0, [5.0, 500.0], "height of the slope"),
+        Parameter::new("crack", "m", 14.0, [0.0, 100.0], "depth of the tension crack"),
+        Parameter::new("face_deg", "°", 50.0, [20.0, 80.0], "dip of the face"),
+        Parameter::new("plane_deg", "°", 35.0, [10.0, 70.0], "dip of the plane"),
+        Parameter::new("cohesion", "Pa", 100e3, [0.0, 1e7], "cohesion of the plane"),
+        Parameter::new("phi_deg", "°", 35.0, [1.0, 70.0], "friction of the plane"),
+        Parameter::new("gamma", "N/m³", 26.5e3, [1e4, 4e4], "unit weight of the rock"),
+        Parameter::new("gamma_w", "N/m³", 9.81e3, [5e3, 2e4], "unit weight of water"),
+        Parameter::new("water_half", "m", 7.0, [0.1, 100.0], "lower water in the crack"),
+        Parameter::new("water_full", "m", 14.0, [0.1, 100.0], "higher water in the crack"),
+        Parameter::new("kh", "", 0.08, [0.0, 0.5], "seismic coefficient"),
+        Parameter::new("young", "Pa", 5e10, [1e9, 2e11], "Young's modulus of the rock"),
+        Parameter::new("mesh", "", 0.13, [0.02, 0.3], "mesh size over height"),
     ],
     quick: true,
     implicit: false,
@@ -38,23 +32,9 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn slide(setup: &Setup, water: f64, seismic: f64) -> PlaneSlide {
-    let height = setup.get("height");
-    PlaneSlide {
-        height,
-        crack: setup.get("crack"),
-        face: setup.get("face_deg").to_radians(),
-        plane: setup.get("plane_deg").to_radians(),
-        cohesion: setup.get("cohesion"),
-        friction: setup.get("phi_deg").to_radians(),
-        unit_weight: setup.get("gamma"),
-        water_weight: setup.get("gamma_w"),
-        water,
-        seismic,
-        young: setup.get("young"),
-        size: setup.get("mesh") * height,
-        planes: 1,
-        spacing: height,
-    }
+    let slide = PlaneSlide::of(setup, setup.get("plane_deg"), setup.get("gamma"));
+    let [crack, water_weight, young] = ["crack", "gamma_w", "young"].map(|name| setup.get(name));
+    PlaneSlide { crack, water_weight, water, seismic, young, size: setup.get("mesh") * slide.height, ..slide }
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
@@ -65,7 +45,7 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         return Err(Trouble(message.to_owned()));
     }
     let mut outcome = Outcome::default();
-    let mut series = Vec::new();
+    let mut plot = Plot::new("Plane slide", ["water in the crack (m)", "factor of safety"]);
     let mut found = Vec::new();
     for seismic in [0.0, setup.get("kh")] {
         let mut marks = Vec::new();
@@ -86,12 +66,10 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         }
         let levels = (0..=40).map(|k| levels[2] * f64::from(k) / 40.0);
         let points = levels.map(|level| [level, slide(setup, level, seismic).factor()]).collect();
-        series.push(Series { name: format!("exact, kh = {seismic}"), points, marks: false });
-        series.push(Series { name: format!("computed, kh = {seismic}"), points: marks, marks: true });
+        plot = plot.line(format!("exact, kh = {seismic}"), points).marks(format!("computed, kh = {seismic}"), marks);
     }
     outcome.rows.push(ledger_row(&found.iter().collect::<Vec<_>>()));
-    let axes = ["water in the crack (m)".to_owned(), "factor of safety".to_owned()];
-    outcome.plots.push(Plot { title: "Plane slide".to_owned(), axes, logarithmic: [false; 2], series });
+    outcome.plots.push(plot);
     Ok(outcome)
 }
 
@@ -113,7 +91,7 @@ fn pressures(setup: &mut Setup, model: &PlaneSlide, outcome: &mut Outcome) -> Re
         ] {
             let row = Row::new(format!("{what} on the wedge, {kind}, water {} m", model.water), unit, found, exact);
             let most = 1e-10 * force.norm() * arm;
-            outcome.rows.push(row.within(Tolerance::Absolute(most), "sums of some hundred terms: rounding"));
+            outcome.rows.push(row.absolute(most, "sums of some hundred terms: rounding"));
         }
     }
     Ok(())

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::strip::{Motion, Rock, Strip, Wave, run as run_strip};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use super::strip::{Jointed, Motion, Wave, rows};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D1",
@@ -11,18 +11,12 @@ pub const PROBLEM: Problem = Problem {
     source: "Displacement discontinuity: |T| = 2K/√(4K²+1), |R| = 1/√(4K²+1) with K = k/(zω), and v_t/v0 = \
              1 − exp(−2kt/z) behind a step. Catches joint springs that damp, lag or scale with the mesh",
     parameters: &[
-        Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e5, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
-        Parameter { name: "length", unit: "m", default: 50.0, range: [1.0, 1e5], doc: "wave length" },
-        Parameter {
-            name: "elements",
-            unit: "",
-            default: 60.0,
-            range: [30.0, 200.0],
-            doc: "mesh sizes in a wave length",
-        },
-        Parameter { name: "k", unit: "", default: 1.0, range: [0.02, 50.0], doc: "one more ratio K" },
+        Parameter::new("young", "Pa", 50e9, [1e5, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("density", "kg/m³", 2650.0, [1.0, 1e5], "density"),
+        Parameter::new("length", "m", 50.0, [1.0, 1e5], "wave length"),
+        Parameter::new("elements", "", 60.0, [30.0, 200.0], "mesh sizes in a wave length"),
+        Parameter::new("k", "", 1.0, [0.02, 50.0], "one more ratio K"),
     ],
     quick: true,
     implicit: false,
@@ -45,61 +39,7 @@ fn behind_step(t: f64, rate: f64, rise: f64) -> f64 {
     (integral(t) - integral(t - rise)) / rise
 }
 
-/// The strip with a joint half way, or without one.
-struct Joint {
-    rock: Rock,
-    wave: Wave,
-    length: f64,
-    size: f64,
-    /// Whether the joint runs across elements, or else along a row of the lattice.
-    across: bool,
-}
-
-impl Joint {
-    fn omega(&self) -> f64 {
-        2.0 * PI * self.rock.speed(self.wave) / self.length
-    }
-
-    /// Runs to time `until` with the rows as the incident wave; monitors stand a quarter of the length below and above.
-    fn run(
-        &self,
-        setup: &mut Setup,
-        name: &str,
-        stiffness: Option<f64>,
-        rows: &[[f64; 2]],
-        until: f64,
-    ) -> Result<Motion, Trouble> {
-        let (height, size) = (1.5 * self.length, self.size);
-        let monitors = [0.5 * self.length, self.length];
-        let shift = if self.across { [0.23 * size, 0.37 * size] } else { [0.0; 2] };
-        let origin = [shift[0], 0.5 * height + shift[1]];
-        let mut strip = Strip {
-            wave: self.wave,
-            rock: self.rock,
-            height,
-            size,
-            origin,
-            monitors: &monitors,
-            duration: 2.0 * until,
-            extra: String::new(),
-        };
-        let middle = 0.5 * height;
-        strip.extra = strip.foot(rows, 1e-3) + &strip.quiet_head();
-        if let Some(k) = stiffness {
-            strip.extra += &format!(
-                "[[joint]]\npoints = [[-{size}, {middle}], [{far}, {middle}]]\n[joint_law.joint]\nfriction_deg = 0.0\n\
-                 normal_stiffness = {k:e}\nshear_stiffness = {k:e}\ncohesion = 1e12\ntension = 1e12\n",
-                far = 3.0 * size
-            );
-        }
-        run_strip(setup, name, &strip, until)
-    }
-}
-
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
-    let [young, poisson, density, length] = ["young", "poisson", "density", "length"].map(|n| setup.get(n));
-    let rock = Rock { density, young, poisson };
-    let size = length / setup.get("elements");
     let mut ratios = if setup.quick { vec![0.5] } else { vec![0.1, 0.5, 1.0, 2.0, 5.0] };
     let own = setup.get("k");
     if !ratios.contains(&own) {
@@ -107,106 +47,102 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     }
     let mut outcome = Outcome::default();
     for wave in Wave::BOTH {
-        let joint = Joint { rock, wave, length, size, across: false };
-        joint.harmonic(setup, &ratios, &mut outcome)?;
-        joint.step(setup, 0.5 * joint.omega() * rock.impedance(wave), &mut outcome)?;
+        let joint = Jointed::of(setup, wave);
+        harmonic(&joint, setup, &ratios, &mut outcome)?;
+        step(&joint, setup, 0.5 * omega(&joint) * joint.rock.impedance(wave), &mut outcome)?;
         if !setup.quick {
-            Joint { across: true, ..joint }.harmonic(setup, &[own], &mut outcome)?;
+            harmonic(&Jointed { across: true, ..joint }, setup, &[own], &mut outcome)?;
         }
     }
     Ok(outcome)
 }
 
-impl Joint {
-    fn harmonic(&self, setup: &mut Setup, ratios: &[f64], outcome: &mut Outcome) -> Result<(), Trouble> {
-        let (omega, wave) = (self.omega(), self.wave);
-        let period = 2.0 * PI / omega;
-        let until = 9.0 * period;
-        // Four waves rise smoothly, so that the joint rings little when the measurement begins.
-        let rise = |t: f64| 0.5 - 0.5 * (PI * (t / (2.0 * period)).min(1.0)).cos();
-        let rows = super::strip::rows(until, 900, |t| rise(t) * (omega * t).sin());
-        let place = if self.across { ", across elements" } else { "" };
-        let open = self.run(setup, &format!("{wave:?}{place}, no joint"), None, &rows, until)?;
-        let window = (7.0 * period, 9.0 * period - 1e-9 * period);
-        let amplitude = |motion: &Motion, signal: &[f64]| motion.amplitude(signal, omega, window.0, window.1);
-        let incident = [0, 1].map(|k| amplitude(&open, &open.velocity[k]));
-        let reason = if self.across {
-            "2 % of the incident wave: where a joint cuts elements, its nodes are off the stars, and mass and \
-             stiffness near it err by that of up to some 0.1 h of rock"
-        } else {
-            "2 % asked; a wave of n mesh sizes errs by some (2π/n)²/12, and a little more where the joint is soft"
-        };
-        let mut found = [Vec::new(), Vec::new()];
-        for &ratio in ratios {
-            let stiffness = ratio * self.rock.impedance(wave) * omega;
-            let name = format!("{wave:?}{place}, K = {ratio}");
-            let motion = self.run(setup, &name, Some(stiffness), &rows, until)?;
-            let back: Vec<f64> = motion.velocity[0].iter().zip(&open.velocity[0]).map(|(v, i)| v - i).collect();
-            let measured =
-                [amplitude(&motion, &motion.velocity[1]) / incident[1], amplitude(&motion, &back) / incident[0]];
-            for ((k, which), exact) in ["|T|", "|R|"].into_iter().enumerate().zip(coefficients(ratio)) {
-                found[k].push([ratio, measured[k]]);
-                let most = 0.02 * if self.across { 1.0 } else { exact };
-                outcome.rows.push(
-                    Row::new(format!("{name}: {which}"), "", measured[k], exact)
-                        .within(Tolerance::Absolute(most), reason),
-                );
-            }
-            outcome.rows.push(Row::ledger(&motion.last));
-        }
-        let exact = |k: usize| {
-            (0..=60).map(|i| 0.05 * 10f64.powf(f64::from(i) / 25.0)).map(|r| [r, coefficients(r)[k]]).collect()
-        };
-        let [t, r] = found;
-        let line = |name: &str, points, marks| Series { name: name.into(), points, marks };
-        if self.across {
-            return Ok(());
-        }
-        outcome.plots.push(Plot {
-            title: format!("D1: {wave:?} wave through one joint"),
-            axes: ["K = k/(zω)".into(), "share of the incident amplitude".into()],
-            logarithmic: [true, false],
-            series: vec![
-                line("|T|, exact", exact(0), false),
-                line("|R|, exact", exact(1), false),
-                line("|T|, computed", t, true),
-                line("|R|, computed", r, true),
-            ],
-        });
-        Ok(())
-    }
+fn omega(joint: &Jointed) -> f64 {
+    2.0 * PI * joint.rock.speed(joint.wave) / joint.length
+}
 
-    /// A step of velocity that rises within a few mesh sizes: what passes the joint of `stiffness` (Pa/m).
-    fn step(&self, setup: &mut Setup, stiffness: f64, outcome: &mut Outcome) -> Result<(), Trouble> {
-        let (wave, speed) = (self.wave, self.rock.speed(self.wave));
-        let (arrival, rise) = (self.length / speed, RISE * self.size / speed);
-        let rate = 2.0 * stiffness / self.rock.impedance(wave);
-        let until = arrival + rise + 4.0 / rate;
-        let rows = [[0.0, 0.0], [rise, 1.0], [1e6, 1.0]];
-        let motion = self.run(setup, &format!("{wave:?}, step"), Some(stiffness), &rows, until)?;
-        let exact = |t: f64| behind_step(t - arrival, rate, rise);
-        let shares: Vec<f64> = motion.velocity[1].iter().map(|v| v / 1e-3).collect();
-        let at = |time: f64| {
-            let k = motion.times.partition_point(|t| *t < time).clamp(1, shares.len() - 1);
-            let part = (time - motion.times[k - 1]) / (motion.times[k] - motion.times[k - 1]);
-            shares[k - 1] + part * (shares[k] - shares[k - 1])
-        };
-        let reason = "2 % asked, of the incident step; the mesh rings a little behind the front";
-        for share in [0.5, 1.0, 2.0, 3.0] {
-            let time = arrival + 0.5 * rise + share / rate;
-            outcome.rows.push(
-                Row::new(format!("{wave:?}, step: v_t/v0 {share}·z/2k after its middle"), "", at(time), exact(time))
-                    .within(Tolerance::Absolute(0.02), reason),
-            );
+/// A joint of this stiffness (Pa/m), so strong that it is linear.
+fn linear(stiffness: f64) -> Option<(f64, &'static str)> {
+    Some((stiffness, "cohesion = 1e12\ntension = 1e12\n"))
+}
+
+/// Amplitude (m/s) of the incident waves.
+const AMPLITUDE: f64 = 1e-3;
+
+fn harmonic(joint: &Jointed, setup: &mut Setup, ratios: &[f64], outcome: &mut Outcome) -> Result<(), Trouble> {
+    let (omega, wave) = (omega(joint), joint.wave);
+    let period = 2.0 * PI / omega;
+    let until = 9.0 * period;
+    // Four waves rise smoothly, so that the joint rings little when the measurement begins.
+    let rise = |t: f64| 0.5 - 0.5 * (PI * (t / (2.0 * period)).min(1.0)).cos();
+    let rows = rows(until, 900, |t| rise(t) * (omega * t).sin());
+    let place = if joint.across { ", across elements" } else { "" };
+    let open = joint.run(setup, &format!("{wave:?}{place}, no joint"), None, (&rows, AMPLITUDE), until)?;
+    let window = (7.0 * period, 9.0 * period - 1e-9 * period);
+    let amplitude = |motion: &Motion, signal: &[f64]| motion.amplitude(signal, omega, window.0, window.1);
+    let incident = [0, 1].map(|k| amplitude(&open, &open.velocity[k]));
+    let reason = if joint.across {
+        "2 % of the incident wave: where a joint cuts elements, its nodes are off the stars, and mass and \
+         stiffness near it err by that of up to some 0.1 h of rock"
+    } else {
+        "2 % asked; a wave of n mesh sizes errs by some (2π/n)²/12, and a little more where the joint is soft"
+    };
+    let mut found = [Vec::new(), Vec::new()];
+    for &ratio in ratios {
+        let stiffness = ratio * joint.rock.impedance(wave) * omega;
+        let name = format!("{wave:?}{place}, K = {ratio}");
+        let motion = joint.run(setup, &name, linear(stiffness), (&rows, AMPLITUDE), until)?;
+        let back: Vec<f64> = motion.velocity[0].iter().zip(&open.velocity[0]).map(|(v, i)| v - i).collect();
+        let measured = [amplitude(&motion, &motion.velocity[1]) / incident[1], amplitude(&motion, &back) / incident[0]];
+        for ((k, which), exact) in ["|T|", "|R|"].into_iter().enumerate().zip(coefficients(ratio)) {
+            found[k].push([ratio, measured[k]]);
+            let most = 0.02 * if joint.across { 1.0 } else { exact };
+            outcome.rows.push(Row::new(format!("{name}: {which}"), "", measured[k], exact).absolute(most, reason));
         }
-        outcome.plots.push(Plot {
-            title: format!("D1: {wave:?} velocity step behind one joint"),
-            axes: ["time (s)".into(), "v_t/v0".into()],
-            series: Series::beside("exact", exact, motion.points(&shares)),
-            ..Plot::default()
-        });
-        Ok(())
+        outcome.rows.push(Row::ledger(&motion.last));
     }
+    let exact =
+        |k: usize| (0..=60).map(|i| 0.05 * 10f64.powf(f64::from(i) / 25.0)).map(|r| [r, coefficients(r)[k]]).collect();
+    let [t, r] = found;
+    if joint.across {
+        return Ok(());
+    }
+    outcome.plots.push(
+        Plot::new(format!("D1: {wave:?} wave through one joint"), ["K = k/(zω)", "share of the incident amplitude"])
+            .line("|T|, exact", exact(0))
+            .line("|R|, exact", exact(1))
+            .marks("|T|, computed", t)
+            .marks("|R|, computed", r)
+            .logarithmic([true, false]),
+    );
+    Ok(())
+}
+
+/// A step of velocity that rises within a few mesh sizes: what passes the joint of `stiffness` (Pa/m).
+fn step(joint: &Jointed, setup: &mut Setup, stiffness: f64, outcome: &mut Outcome) -> Result<(), Trouble> {
+    let Jointed { rock, wave, length, size, .. } = *joint;
+    let speed = rock.speed(wave);
+    let (arrival, rise) = (length / speed, RISE * size / speed);
+    let rate = 2.0 * stiffness / rock.impedance(wave);
+    let until = arrival + rise + 4.0 / rate;
+    let rows = [[0.0, 0.0], [rise, 1.0], [1e6, 1.0]];
+    let motion = joint.run(setup, &format!("{wave:?}, step"), linear(stiffness), (&rows, AMPLITUDE), until)?;
+    let exact = |t: f64| behind_step(t - arrival, rate, rise);
+    let shares: Vec<f64> = motion.velocity[1].iter().map(|v| v / 1e-3).collect();
+    let at = |time: f64| {
+        let k = motion.times.partition_point(|t| *t < time).clamp(1, shares.len() - 1);
+        let part = (time - motion.times[k - 1]) / (motion.times[k] - motion.times[k - 1]);
+        shares[k - 1] + part * (shares[k] - shares[k - 1])
+    };
+    let reason = "2 % asked, of the incident step; the mesh rings a little behind the front";
+    for share in [0.5, 1.0, 2.0, 3.0] {
+        let time = arrival + 0.5 * rise + share / rate;
+        let row = Row::new(format!("{wave:?}, step: v_t/v0 {share}·z/2k after its middle"), "", at(time), exact(time));
+        outcome.rows.push(row.absolute(0.02, reason));
+    }
+    let plot = Plot::new(format!("D1: {wave:?} velocity step behind one joint"), ["time (s)", "v_t/v0"]);
+    outcome.plots.push(plot.beside("exact", exact, motion.points(&shares)));
+    Ok(())
 }
 
 #[cfg(test)]

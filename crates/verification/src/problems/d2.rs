@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::strip::{Motion, Rock, Strip, Wave, run as run_strip};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use super::strip::{Jointed, Wave, rows};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D2",
@@ -12,18 +12,12 @@ pub const PROBLEM: Problem = Problem {
              T² and R² are the mean squares of the clipped sine and of what was clipped off, over that of the sine, \
              and A² = 1 − T² − R². Catches slip that lags, strength that scales with the mesh, and energy made by slip",
     parameters: &[
-        Parameter { name: "young", unit: "Pa", default: 50e9, range: [1e5, 1e12], doc: "Young's modulus" },
-        Parameter { name: "poisson", unit: "", default: 0.25, range: [0.0, 0.45], doc: "Poisson's ratio" },
-        Parameter { name: "density", unit: "kg/m³", default: 2650.0, range: [1.0, 1e5], doc: "density" },
-        Parameter { name: "length", unit: "m", default: 50.0, range: [1.0, 1e5], doc: "wave length" },
-        Parameter {
-            name: "elements",
-            unit: "",
-            default: 80.0,
-            range: [40.0, 200.0],
-            doc: "mesh sizes in a wave length",
-        },
-        Parameter { name: "ratio", unit: "", default: 0.5, range: [0.05, 0.9], doc: "strength over incident stress" },
+        Parameter::new("young", "Pa", 50e9, [1e5, 1e12], "Young's modulus"),
+        Parameter::new("poisson", "", 0.25, [0.0, 0.45], "Poisson's ratio"),
+        Parameter::new("density", "kg/m³", 2650.0, [1.0, 1e5], "density"),
+        Parameter::new("length", "m", 50.0, [1.0, 1e5], "wave length"),
+        Parameter::new("elements", "", 80.0, [40.0, 200.0], "mesh sizes in a wave length"),
+        Parameter::new("ratio", "", 0.5, [0.05, 0.9], "strength over incident stress"),
     ],
     quick: true,
     implicit: false,
@@ -55,45 +49,17 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     Ok(outcome)
 }
 
-/// The strip with a joint of `strength` (Pa), or without one.
-fn strip_run(setup: &mut Setup, name: &str, strength: Option<f64>) -> Result<(Motion, Rock, f64), Trouble> {
-    let [young, poisson, density, length] = ["young", "poisson", "density", "length"].map(|n| setup.get(n));
-    let (rock, wave) = (Rock { density, young, poisson }, Wave::S);
-    let size = length / setup.get("elements");
-    let (height, period) = (1.5 * length, length / rock.speed(wave));
-    let until = 6.0 * period;
-    let monitors = [0.5 * length, length];
-    let mut strip = Strip {
-        wave,
-        rock,
-        height,
-        size,
-        // A row of the lattice lies along the joint.
-        origin: [0.0, 0.5 * height],
-        monitors: &monitors,
-        duration: 2.0 * until,
-        extra: String::new(),
-    };
-    let rows = super::strip::rows(until, 1200, |t| (2.0 * PI * t / period).sin());
-    strip.extra = strip.foot(&rows, VELOCITY) + &strip.quiet_head();
-    if let Some(strength) = strength {
-        let stiffness = 1000.0 * rock.impedance(wave) * 2.0 * PI / period;
-        strip.extra += &format!(
-            "[[joint]]\npoints = [[-{size}, {middle}], [{far}, {middle}]]\n[joint_law.joint]\nfriction_deg = 0.0\n\
-             normal_stiffness = {stiffness:e}\nshear_stiffness = {stiffness:e}\ncohesion = {strength:e}\n\
-             tension = 1e12\nresidual_tension = 1e12\n",
-            middle = 0.5 * height,
-            far = 3.0 * size
-        );
-    }
-    Ok((run_strip(setup, name, &strip, until)?, rock, period))
-}
-
 fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Trouble> {
-    let (open, rock, period) = strip_run(setup, "no joint", None)?;
-    let impedance = rock.impedance(Wave::S);
+    let strip = Jointed::of(setup, Wave::S);
+    let impedance = strip.rock.impedance(Wave::S);
+    let period = strip.length / strip.rock.speed(Wave::S);
+    let until = 6.0 * period;
+    let wave = (&rows(until, 1200, |t| (2.0 * PI * t / period).sin())[..], VELOCITY);
+    let open = strip.run(setup, "no joint", None, wave, until)?;
     let name = format!("strength {ratio} of the stress");
-    let (motion, ..) = strip_run(setup, &name, Some(ratio * impedance * VELOCITY))?;
+    let strength = format!("cohesion = {:e}\ntension = 1e12\nresidual_tension = 1e12\n", ratio * impedance * VELOCITY);
+    let stiffness = 1000.0 * impedance * 2.0 * PI / period;
+    let motion = strip.run(setup, &name, Some((stiffness, &strength)), wave, until)?;
     let (from, to) = (4.0 * period, 6.0 * period - 1e-9 * period);
     let back: Vec<f64> = motion.velocity[0].iter().zip(&open.velocity[0]).map(|(v, i)| v - i).collect();
     let incident = [0, 1].map(|k| open.mean_square(&open.velocity[k], from, to));
@@ -102,23 +68,18 @@ fn solve(setup: &mut Setup, ratio: f64, outcome: &mut Outcome) -> Result<(), Tro
     let found = [through.sqrt(), reflected.sqrt(), (1.0 - through - reflected).max(0.0).sqrt()];
     let reason = "2 % asked; the joint's own stiffness is 1000 zω, the mesh rounds the kinks of the clipped sine";
     for ((which, exact), found) in ["T", "R", "A"].into_iter().zip(coefficients(ratio)).zip(found) {
-        outcome
-            .rows
-            .push(Row::new(format!("{name}: {which}"), "", found, exact).within(Tolerance::Relative(0.02), reason));
+        outcome.rows.push(Row::new(format!("{name}: {which}"), "", found, exact).relative(0.02, reason));
     }
     outcome.rows.push(Row::ledger(&motion.last));
     let stress: Vec<f64> = motion.velocity[1].iter().map(|v| v / VELOCITY).collect();
-    let delay = setup.get("length") / rock.speed(Wave::S);
     let clipped = |t: f64| {
-        let phase = if t > delay { (2.0 * PI * (t - delay) / period).sin() } else { 0.0 };
+        let phase = if t > period { (2.0 * PI * (t - period) / period).sin() } else { 0.0 };
         phase.clamp(-ratio, ratio)
     };
-    outcome.plots.push(Plot {
-        title: format!("D2: stress that passes, {name}"),
-        axes: ["time (s)".into(), "stress over that of the incident wave".into()],
-        series: Series::beside("clipped sine", clipped, motion.points(&stress)),
-        ..Plot::default()
-    });
+    outcome.plots.push(
+        Plot::new(format!("D2: stress that passes, {name}"), ["time (s)", "stress over that of the incident wave"])
+            .beside("clipped sine", clipped, motion.points(&stress)),
+    );
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use enmm::model::{Simulation, StepReport};
 
 use super::shear_box::{Drive, JointState, joint_state, share};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D3",
@@ -11,19 +11,17 @@ pub const PROBLEM: Problem = Problem {
     source: "Mohr–Coulomb: peak τ = c + σn·tan φ at τ/ks, then the residual strength; Barton–Bandis: τ = σn·tan(φr + \
              JRC·log10(JCS/σn)) and σn = kn·v/(1 − v/vmax); catches wrong strength, stiffness, softening and closure",
     parameters: &[
-        Parameter { name: "sn", unit: "Pa", default: 1e6, range: [1e4, 1e7], doc: "normal stress" },
-        Parameter { name: "c", unit: "Pa", default: 0.5e6, range: [0.0, 1e7], doc: "cohesion, peak" },
-        Parameter { name: "phi_deg", unit: "°", default: 30.0, range: [1.0, 60.0], doc: "friction angle, peak" },
-        Parameter { name: "phi_residual_deg", unit: "°", default: 25.0, range: [1.0, 60.0], doc: "residual friction" },
-        Parameter { name: "ks", unit: "Pa/m", default: 1e10, range: [1e8, 1e11], doc: "shear stiffness" },
-        Parameter { name: "jrc", unit: "", default: 10.0, range: [0.0, 20.0], doc: "joint roughness coefficient" },
-        Parameter { name: "jcs", unit: "Pa", default: 1e8, range: [1e6, 1e9], doc: "joint wall strength" },
-        Parameter {
-            name: "phi_r_deg", unit: "°", default: 28.0, range: [5.0, 45.0], doc: "Barton–Bandis angle φr"
-        },
-        Parameter { name: "kn", unit: "Pa/m", default: 2e10, range: [1e9, 1e11], doc: "initial normal stiffness" },
-        Parameter { name: "vmax", unit: "m", default: 2e-4, range: [1e-5, 1e-2], doc: "greatest closure" },
-        Parameter { name: "mesh", unit: "m", default: 0.5, range: [0.2, 1.0], doc: "mesh size" },
+        Parameter::new("sn", "Pa", 1e6, [1e4, 1e7], "normal stress"),
+        Parameter::new("c", "Pa", 0.5e6, [0.0, 1e7], "cohesion, peak"),
+        Parameter::new("phi_deg", "°", 30.0, [1.0, 60.0], "friction angle, peak"),
+        Parameter::new("phi_residual_deg", "°", 25.0, [1.0, 60.0], "residual friction"),
+        Parameter::new("ks", "Pa/m", 1e10, [1e8, 1e11], "shear stiffness"),
+        Parameter::new("jrc", "", 10.0, [0.0, 20.0], "joint roughness coefficient"),
+        Parameter::new("jcs", "Pa", 1e8, [1e6, 1e9], "joint wall strength"),
+        Parameter::new("phi_r_deg", "°", 28.0, [5.0, 45.0], "Barton–Bandis angle φr"),
+        Parameter::new("kn", "Pa/m", 2e10, [1e9, 1e11], "initial normal stiffness"),
+        Parameter::new("vmax", "m", 2e-4, [1e-5, 1e-2], "greatest closure"),
+        Parameter::new("mesh", "m", 0.5, [0.2, 1.0], "mesh size"),
     ],
     quick: true,
     implicit: false,
@@ -95,18 +93,13 @@ fn shear(
     Ok((states, greatest, report))
 }
 
-fn series(name: &str, points: Vec<[f64; 2]>, marks: bool) -> Series {
-    Series { name: name.into(), points, marks }
-}
-
 /// Mohr–Coulomb: peak, place of the peak, residual.
 fn soften(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
     let [stress, cohesion, ks] = ["sn", "c", "ks"].map(|name| setup.get(name));
     let [phi, residual] = ["phi_deg", "phi_residual_deg"].map(|name| setup.get(name));
     let law = format!(
-        "friction_deg = {phi:?}\ncohesion = {cohesion:?}\nresidual_friction_deg = {residual:?}\nresidual_cohesion = \
-        0.0\n\
-         normal_stiffness = {ks:e}\nshear_stiffness = {ks:e}\n"
+        "friction_deg = {phi:?}\ncohesion = {cohesion:?}\nresidual_friction_deg = {residual:?}\n\
+         residual_cohesion = 0.0\nnormal_stiffness = {ks:e}\nshear_stiffness = {ks:e}\n"
     );
     let (peak, last) = (coulomb(stress, cohesion, phi.to_radians()), coulomb(stress, 0.0, residual.to_radians()));
     let text = case(setup, &law, stress, true);
@@ -116,35 +109,24 @@ fn soften(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
     let end = states.last().copied().unwrap_or_default();
     let even = "stresses of a block 5000 times stiffer than the joint are even to some per mille; the displacement \
                 grows by 1/200 of the peak's at a time";
-    rows.push(
-        Row::new("Mohr–Coulomb: peak shear stress", "Pa", greatest, peak).within(Tolerance::Relative(5e-3), even),
-    );
-    rows.push(Row::new("its displacement", "m", top.slip, peak / ks).within(Tolerance::Relative(8e-3), even));
-    rows.push(
-        Row::new("residual shear stress", "Pa", end.shear, last)
-            .within(Tolerance::Relative(1e-3), "Coulomb's limit holds at the end of each step; the block is at rest"),
-    );
+    rows.push(Row::new("Mohr–Coulomb: peak shear stress", "Pa", greatest, peak).relative(5e-3, even));
+    rows.push(Row::new("its displacement", "m", top.slip, peak / ks).relative(8e-3, even));
+    let row = Row::new("residual shear stress", "Pa", end.shear, last);
+    rows.push(row.relative(1e-3, "Coulomb's limit holds at the end of each step; the block is at rest"));
     rows.push(Row::ledger(&report));
     let curve = states.iter().map(|s| [s.slip * 1e3, s.shear / 1e6]).collect();
     let exact = [[0.0, 0.0], [peak / ks, peak], [peak / ks, last], [2.0 * peak / ks, last]];
-    Ok(Plot {
-        title: "Shear stress against shear displacement".into(),
-        axes: ["displacement (mm)".into(), "shear stress (MPa)".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            series("exact", exact.map(|[u, t]| [u * 1e3, t / 1e6]).to_vec(), false),
-            series("computed", curve, true),
-        ],
-    })
+    Ok(Plot::new("Shear stress against shear displacement", ["displacement (mm)", "shear stress (MPa)"])
+        .line("exact", exact.map(|[u, t]| [u * 1e3, t / 1e6]).to_vec())
+        .marks("computed", curve))
 }
 
 /// The law of the rough joint.
 fn rough(setup: &Setup) -> String {
     let [jrc, jcs, residual, ks, kn, vmax] = ["jrc", "jcs", "phi_r_deg", "ks", "kn", "vmax"].map(|n| setup.get(n));
     format!(
-        "kind = \"barton_bandis\"\nfriction_deg = {residual:?}\njrc = {jrc:?}\njcs = {jcs:?}\nnormal_stiffness = \
-        {kn:e}\n\
-         shear_stiffness = {ks:e}\nclosure_max = {vmax:e}\n"
+        "kind = \"barton_bandis\"\nfriction_deg = {residual:?}\njrc = {jrc:?}\njcs = {jcs:?}\n\
+         normal_stiffness = {kn:e}\nshear_stiffness = {ks:e}\nclosure_max = {vmax:e}\n"
     )
 }
 
@@ -162,7 +144,7 @@ fn roughness(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<(), Trouble> {
         let found = states.last().copied().unwrap_or_default().shear;
         let reason = "all of the joint slips; the law bends little over the spread of the normal stress";
         let name = format!("Barton–Bandis: shear stress under {:.4} MPa", stress / 1e6);
-        rows.push(Row::new(name, "Pa", found, exact).within(Tolerance::Relative(1e-3), reason));
+        rows.push(Row::new(name, "Pa", found, exact).relative(1e-3, reason));
         rows.push(Row::ledger(&report));
     }
     Ok(())
@@ -199,23 +181,17 @@ fn close(setup: &mut Setup, rows: &mut Vec<Row>) -> Result<Plot, Trouble> {
         let way = if k < 5 { "loading" } else { "unloading" };
         let reason = "at rest after each change of the pressure; the block closes the joint evenly to 1e-3";
         let name = format!("closure under {:.4} MPa, {way}", share * stress / 1e6);
-        rows.push(Row::new(name, "m", state.closure, exact(share * stress)).within(Tolerance::Relative(2e-3), reason));
+        rows.push(Row::new(name, "m", state.closure, exact(share * stress)).relative(2e-3, reason));
         let list = if k < 5 { &mut loading } else { &mut unloading };
         list.push([state.closure * 1e3, state.normal / 1e6]);
         simulation.next_stage()?;
     }
     rows.push(Row::ledger(&report));
     let curve = (0..=200).map(|k| f64::from(k) * 0.05 * stress).map(|s| [exact(s) * 1e3, s / 1e6]).collect();
-    Ok(Plot {
-        title: "Normal stress against closure".into(),
-        axes: ["closure (mm)".into(), "normal stress (MPa)".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            series("exact", curve, false),
-            series("computed, loading", loading, true),
-            series("computed, unloading", unloading, true),
-        ],
-    })
+    Ok(Plot::new("Normal stress against closure", ["closure (mm)", "normal stress (MPa)"])
+        .line("exact", curve)
+        .marks("computed, loading", loading)
+        .marks("computed, unloading", unloading))
 }
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {

@@ -3,53 +3,23 @@
 use enmm::model::{Simulation, StepReport};
 
 use super::continuum::list;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble, wider_open};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble, wider_open};
 
 pub const PROBLEM: Problem = Problem {
     id: "D4",
     title: "Jaeger's plane of weakness",
-    source: "J. C. Jaeger (1960): uniaxial strength 2cj/((1 − tan φj·tan b)·sin 2b) of a sample with a joint at b \
-             from its \
-             axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong \
-             yield of the \
-             rock and locking of blocks between plates",
+    source: "J. C. Jaeger (1960): uniaxial strength 2cj/((1 − tan φj·tan b)·sin 2b) of a sample with a joint at b from \
+             its axis, at most the strength 2c·cos φ/(1 − sin φ) of the rock; catches wrong joint strength, wrong \
+             yield of the rock and locking of blocks between plates",
     parameters: &[
-        Parameter {
-            name: "b_deg",
-            unit: "°",
-            default: 30.0,
-            range: [5.0, 85.0],
-            doc: "joint from the axis of the load",
-        },
-        Parameter { name: "cohesion", unit: "Pa", default: 2e3, range: [1e2, 1e8], doc: "cohesion of the rock" },
-        Parameter {
-            name: "phi_deg",
-            unit: "°",
-            default: 40.0,
-            range: [0.0, 55.0],
-            doc: "friction angle of the \
-        rock",
-        },
-        Parameter {
-            name: "joint_cohesion",
-            unit: "Pa",
-            default: 2e3,
-            range: [0.0, 1e8],
-            doc: "cohesion of the \
-        joint",
-        },
-        Parameter {
-            name: "joint_phi_deg", unit: "°", default: 30.0, range: [0.0, 55.0], doc: "friction of the joint"
-        },
-        Parameter { name: "width", unit: "m", default: 1.0, range: [0.1, 10.0], doc: "width of the sample" },
-        Parameter { name: "mesh", unit: "", default: 0.25, range: [0.1, 0.5], doc: "mesh size over width" },
-        Parameter {
-            name: "stiffness",
-            unit: "",
-            default: 1e4,
-            range: [2e3, 1e5],
-            doc: "Young's modulus over strength",
-        },
+        Parameter::new("b_deg", "°", 30.0, [5.0, 85.0], "joint from the axis of the load"),
+        Parameter::new("cohesion", "Pa", 2e3, [1e2, 1e8], "cohesion of the rock"),
+        Parameter::new("phi_deg", "°", 40.0, [0.0, 55.0], "friction angle of the rock"),
+        Parameter::new("joint_cohesion", "Pa", 2e3, [0.0, 1e8], "cohesion of the joint"),
+        Parameter::new("joint_phi_deg", "°", 30.0, [0.0, 55.0], "friction of the joint"),
+        Parameter::new("width", "m", 1.0, [0.1, 10.0], "width of the sample"),
+        Parameter::new("mesh", "", 0.25, [0.1, 0.5], "mesh size over width"),
+        Parameter::new("stiffness", "", 1e4, [2e3, 1e5], "Young's modulus over strength"),
     ],
     quick: true,
     implicit: false,
@@ -106,14 +76,12 @@ fn case(setup: &Setup, strength: &Strength, b_deg: f64) -> String {
     let ([w, h], phi) = ([width, height], setup.get("phi_deg"));
     format!(
         "title = \"Sample with a joint at {b_deg}° from its axis\"\n[domain]\noutline = {}\n[mesh]\nsize = {:e}\n\
-         angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = \
-         {:e}\n\
+         angle_deg = 10.0\n[gravity]\ny = 0.0\n[[joint]]\npoints = {}\n[rock.rock]\ndensity = {DENSITY}\nyoung = {:e}\n\
          poisson = 0.25\ncohesion = {:e}\nfriction_deg = {phi:?}\ndilation_deg = {phi:?}\n[joint_law.joint]\n\
-         cohesion = {:e}\nfriction_deg = {:?}\n[solver]\ncontact_stiffness = {:?}\n\
-         [[fix]]\nedge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n\
-         [[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\naxes = \"y\"\n\
-         [[fix]]\npoint = [{:?}, 0.0]\naxes = \"x\"\n[[stage]]\nname = \"press\"\nkind = \"dynamic\"\ndamping = 0.5\n\
-         duration = 1e9\n",
+         cohesion = {:e}\nfriction_deg = {:?}\n[solver]\ncontact_stiffness = {:?}\n[[fix]]\n\
+         edge = [[0.0, 0.0], [{w:?}, 0.0]]\naxes = \"y\"\n[[fix]]\nedge = [[0.0, {h:?}], [{w:?}, {h:?}]]\n\
+         axes = \"y\"\n[[fix]]\npoint = [{:?}, 0.0]\naxes = \"x\"\n[[stage]]\nname = \"press\"\nkind = \"dynamic\"\n\
+         damping = 0.5\nduration = 1e9\n",
         list(&[[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]]),
         setup.get("mesh") * w,
         list(&[[-0.1 * w, low - 0.1 * rise], [1.1 * w, high + 0.1 * rise]]),
@@ -193,15 +161,13 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         let exact = strength.with_joint(b.to_radians());
         let row = Row::new(format!("strength with a joint at {b}°"), "Pa", test.strength(), exact);
         rows.push(if exact < strength.cap() {
-            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 \
-                          transits, and \
-                          some 0.5 % where the joint is shallow and the load sensitive";
-            row.within(Tolerance::Relative(0.005), reason)
+            let reason = "inertia of the push, which falls with the square of its speed: below 0.1 % at 800 transits, \
+                          and some 0.5 % where the joint is shallow and the load sensitive";
+            row.relative(0.005, reason)
         } else {
-            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield \
-                          as an \
+            let reason = "the same, and linear elements beside the joint, where the stress is not uniform, yield as an \
                           upper bound does";
-            row.within(Tolerance::Relative(0.01), reason)
+            row.relative(0.01, reason)
         });
         marks.push([b, test.strength()]);
         worst = wider_open(worst, test.report);
@@ -217,20 +183,13 @@ fn plots(strength: &Strength, marks: Vec<[f64; 2]>, curve: Vec<[f64; 2]>, own: f
     let line = (2..=88).map(f64::from).map(|b| [b, strength.with_joint(b.to_radians())]).collect();
     let limit = strength.with_joint(own.to_radians());
     let ends = vec![[0.0, limit], [curve.last().map_or(1.0, |p| p[0]), limit]];
-    let series = |name: &str, points, marks| Series { name: name.into(), points, marks };
     vec![
-        Plot {
-            title: "Uniaxial strength with a plane of weakness".into(),
-            axes: ["angle from the axis [°]".into(), "strength [Pa]".into()],
-            series: vec![series("exact", line, false), series("computed", marks, true)],
-            ..Plot::default()
-        },
-        Plot {
-            title: format!("Axial stress, joint at {own}°"),
-            axes: ["shortening over height".into(), "axial stress [Pa]".into()],
-            series: vec![series("strength", ends, false), series("computed", curve, true)],
-            ..Plot::default()
-        },
+        Plot::new("Uniaxial strength with a plane of weakness", ["angle from the axis [°]", "strength [Pa]"])
+            .line("exact", line)
+            .marks("computed", marks),
+        Plot::new(format!("Axial stress, joint at {own}°"), ["shortening over height", "axial stress [Pa]"])
+            .line("strength", ends)
+            .marks("computed", curve),
     ]
 }
 

@@ -4,7 +4,7 @@ use enmm::geometry::Point;
 use enmm::model::Simulation;
 
 use super::block::G;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Tolerance, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D5",
@@ -14,12 +14,10 @@ pub const PROBLEM: Problem = Problem {
              centred in time (theory, Eqs. 52 and 53), so that it keeps its energy at any step that resolves it. \
              Catches contacts that gain or lose energy, stick, or are entered late.",
     parameters: &[
-        Parameter { name: "m", unit: "kg/m", default: 2500.0, range: [100.0, 1e5], doc: "mass" },
-        Parameter { name: "k", unit: "N/m²", default: 1e9, range: [1e6, 1e11], doc: "stiffness of the spring" },
-        Parameter { name: "H", unit: "m", default: 0.5, range: [0.05, 5.0], doc: "height of the fall" },
-        Parameter {
-            name: "omega_dt", unit: "", default: 1e-3, range: [5e-4, 2e-3], doc: "smallest ω·dt of the three"
-        },
+        Parameter::new("m", "kg/m", 2500.0, [100.0, 1e5], "mass"),
+        Parameter::new("k", "N/m²", 1e9, [1e6, 1e11], "stiffness of the spring"),
+        Parameter::new("H", "m", 0.5, [0.05, 5.0], "height of the fall"),
+        Parameter::new("omega_dt", "", 1e-3, [5e-4, 2e-3], "smallest ω·dt of the three"),
     ],
     quick: true,
     implicit: false,
@@ -149,19 +147,9 @@ fn path_plot(fine: &Drop, height: f64) -> Plot {
         let since = if time < fall { time } else { 2.0 * fall - time };
         [time, height - 0.5 * G * since * since]
     };
-    Plot {
-        title: "Height of the mass over the spring".to_owned(),
-        axes: ["time [s]".to_owned(), "height [m]".to_owned()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series {
-                name: "exact, without the time of contact".to_owned(),
-                points: (0..=100).map(exact).collect(),
-                marks: false,
-            },
-            Series { name: "computed, smallest step".to_owned(), points: fine.path.clone(), marks: true },
-        ],
-    }
+    Plot::new("Height of the mass over the spring", ["time [s]", "height [m]"])
+        .line("exact, without the time of contact", (0..=100).map(exact).collect())
+        .marks("computed, smallest step", fine.path.clone())
 }
 
 #[cfg(test)]

@@ -3,22 +3,21 @@
 use enmm::model::StepReport;
 
 use super::shear_box::{Drive, share};
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D6",
     title: "Roof wedge",
-    source: "Two-stage relaxation of rigid blocks on elastic joints: P = 2·H0·(ks·cos²a + kn·sin²a)·sin(φ − \
-    a)/(ks·cos a·\
-             cos φ + kn·sin a·sin φ); catches wrong coupling of joint stiffness, in-situ stress and friction",
+    source: "Two-stage relaxation of rigid blocks on elastic joints: P = 2·H0·(ks·cos²a + kn·sin²a)·sin(φ − a)/(ks·cos \
+             a·cos φ + kn·sin a·sin φ); catches wrong coupling of joint stiffness, in-situ stress and friction",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 20.0, range: [8.0, 45.0], doc: "half of the apex angle" },
-        Parameter { name: "phi_deg", unit: "°", default: 40.0, range: [10.0, 60.0], doc: "friction, above a_deg" },
-        Parameter { name: "ratio", unit: "", default: 2.0, range: [0.2, 20.0], doc: "kn over ks, besides 1" },
-        Parameter { name: "ks", unit: "Pa/m", default: 1e9, range: [1e7, 1e11], doc: "shear stiffness" },
-        Parameter { name: "h0", unit: "N/m", default: 1e6, range: [1e3, 1e8], doc: "initial horizontal force" },
-        Parameter { name: "height", unit: "m", default: 2.0, range: [0.5, 20.0], doc: "height of the wedge" },
-        Parameter { name: "rows", unit: "", default: 5.0, range: [2.0, 20.0], doc: "mesh triangles over the height" },
+        Parameter::new("a_deg", "°", 20.0, [8.0, 45.0], "half of the apex angle"),
+        Parameter::new("phi_deg", "°", 40.0, [10.0, 60.0], "friction, above a_deg"),
+        Parameter::new("ratio", "", 2.0, [0.2, 20.0], "kn over ks, besides 1"),
+        Parameter::new("ks", "Pa/m", 1e9, [1e7, 1e11], "shear stiffness"),
+        Parameter::new("h0", "N/m", 1e6, [1e3, 1e8], "initial horizontal force"),
+        Parameter::new("height", "m", 2.0, [0.5, 20.0], "height of the wedge"),
+        Parameter::new("rows", "", 5.0, [2.0, 20.0], "mesh triangles over the height"),
     ],
     quick: true,
     implicit: false,
@@ -48,17 +47,15 @@ fn case(setup: &Setup, ratio: f64) -> String {
     let foot = half + lip * setup.get("a_deg").to_radians().tan();
     let stiff = 1e3 * ks * ratio.max(1.0) * height;
     format!(
-        "title = \"Roof wedge\"\n[domain]\noutline = [[-{side:?}, {rise:?}], [-{away:?}, {rise:?}], [-{half:?}, 0.0], \
-         [-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}], [{half:?}, 0.0], [{away:?}, {rise:?}], [{side:?}, {rise:?}], \
-         [{side:?}, {top:?}], [-{side:?}, {top:?}]]\n[mesh]\nsize = {:?}\norigin = [0.013, 0.007]\n[gravity]\ny = \
-         0.0\n[[joint]]\npoints = [[-{half:?}, \
-         0.0], [0.0, {height:?}], [{half:?}, 0.0]]\n[joint_law.joint]\nfriction_deg = {:?}\nnormal_stiffness = {:?}\n\
-         shear_stiffness = {ks:?}\n[rock.stiff]\ndensity = 1e5\nyoung = {stiff:?}\npoisson = 0.2\n[[fix]]\nblock = \
-         [0.0, \
-         {:?}]\n[[fix]]\nedge = [[-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}]]\naxes = \"y\"\n[in_situ]\nsxx = \
-         {:?}\nsyy = 0.0\n\
-         [[stage]]\nname = \"lower\"\nkind = \"dynamic\"\nduration = 1e6\ndamping = 0.5\n[solver]\ncontact_theta = \
-         1.0\ncontact_tolerance = 1e-6\n",
+        "title = \"Roof wedge\"\n[domain]\n\
+         outline = [[-{side:?}, {rise:?}], [-{away:?}, {rise:?}], [-{half:?}, 0.0], [-{foot:?}, -{lip:?}], [{foot:?}, \
+         -{lip:?}], [{half:?}, 0.0], [{away:?}, {rise:?}], [{side:?}, {rise:?}], [{side:?}, {top:?}], [-{side:?}, \
+         {top:?}]]\n[mesh]\nsize = {:?}\norigin = [0.013, 0.007]\n[gravity]\ny = 0.0\n[[joint]]\n\
+         points = [[-{half:?}, 0.0], [0.0, {height:?}], [{half:?}, 0.0]]\n[joint_law.joint]\nfriction_deg = {:?}\n\
+         normal_stiffness = {:?}\nshear_stiffness = {ks:?}\n[rock.stiff]\ndensity = 1e5\nyoung = {stiff:?}\n\
+         poisson = 0.2\n[[fix]]\nblock = [0.0, {:?}]\n[[fix]]\nedge = [[-{foot:?}, -{lip:?}], [{foot:?}, -{lip:?}]]\n\
+         axes = \"y\"\n[in_situ]\nsxx = {:?}\nsyy = 0.0\n[[stage]]\nname = \"lower\"\nkind = \"dynamic\"\n\
+         duration = 1e6\ndamping = 0.5\n[solver]\ncontact_theta = 1.0\ncontact_tolerance = 1e-6\n",
         height / setup.get("rows"),
         setup.get("phi_deg"),
         ks * ratio,
@@ -101,37 +98,29 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
         return Err(Trouble("phi_deg must be above a_deg: the wedge falls under any horizontal force".into()));
     }
     let (h0, own) = (setup.get("h0"), setup.get("ratio"));
-    let (mut rows, mut lines) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
+    let mut plot = Plot::new("Force that carries the wedge against its way", ["way (mm)", "force over H0"]);
     for ratio in [1.0, own] {
         let (curve, [initial, greatest], report) = lower(setup, ratio)?;
         let found = greatest / initial;
         let exact = collapse(a, phi, ratio);
         let reason = "the wedge is 10000 times stiffer than its joints, which gives way by some per mille; its way \
-        grows by \
-                      1/200 of that at collapse at a time";
+                      grows by 1/200 of that at collapse at a time";
         let corners = "in-situ stress times tributary lengths, which at the apex and the two ends of the joints are \
-        those \
-                       of their nodes and not quite those of the faces: 2 % of five elements";
+                       those of their nodes and not quite those of the faces: 2 % of five elements";
         let row = Row::new(format!("initial horizontal force, kn/ks = {ratio}"), "N/m", initial, h0);
-        rows.push(row.within(Tolerance::Relative(2e-2), corners));
+        rows.push(row.relative(2e-2, corners));
         let name = format!("greatest force over H0, kn/ks = {ratio}");
-        rows.push(Row::new(name, "", found, exact).within(Tolerance::Relative(5e-3), reason));
+        rows.push(Row::new(name, "", found, exact).relative(5e-3, reason));
         rows.push(Row::ledger(&report));
         let stiffness = 2.0 * setup.get("ks") * (a.cos().powi(2) + ratio * a.sin().powi(2));
         let line = vec![[0.0, 0.0], [exact * h0 / stiffness * 1e3, exact]];
-        lines.push(Series { name: format!("exact, kn/ks = {ratio}"), points: line, marks: false });
         let points = curve.iter().step_by(5).map(|p| [p[0] * 1e3, p[1] / h0]).collect();
-        lines.push(Series { name: format!("computed, kn/ks = {ratio}"), points, marks: true });
+        plot = plot.line(format!("exact, kn/ks = {ratio}"), line).marks(format!("computed, kn/ks = {ratio}"), points);
         if own == 1.0 {
             break;
         }
     }
-    let plot = Plot {
-        title: "Force that carries the wedge against its way".into(),
-        axes: ["way (mm)".into(), "force over H0".into()],
-        logarithmic: [false; 2],
-        series: lines,
-    };
     Ok(Outcome { rows, plots: vec![plot] })
 }
 

@@ -4,7 +4,7 @@ use enmm_stability::strength_reduction::Reduction;
 
 use super::incline::{G, ledger_row, reduce, trial_plot};
 use super::limit::bound_of;
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "D7",
@@ -18,16 +18,14 @@ pub const PROBLEM: Problem = Problem {
              and F is no higher. Catches bridges that count with a wrong length, and contacts beside a bridge that \
              take its strength",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 40.0, range: [35.0, 50.0], doc: "dip of the plane" },
-        Parameter {
-            name: "phi_deg", unit: "°", default: 30.0, range: [10.0, 34.0], doc: "friction of joint and rock"
-        },
-        Parameter { name: "phi_rock_deg", unit: "°", default: 45.0, range: [35.0, 60.0], doc: "the other rock's" },
-        Parameter { name: "c", unit: "Pa", default: 1e6, range: [2e5, 5e6], doc: "cohesion of rock" },
-        Parameter { name: "k", unit: "", default: 0.06, range: [0.03, 0.2], doc: "share of rock" },
-        Parameter { name: "weight", unit: "N/m", default: 1e6, range: [2e5, 1.5e6], doc: "weight of the block" },
-        Parameter { name: "mesh", unit: "m", default: 1.4, range: [0.6, 1.6], doc: "mesh size" },
-        Parameter { name: "turn_deg", unit: "°", default: 8.0, range: [0.0, 60.0], doc: "angle of the mesh" },
+        Parameter::new("a_deg", "°", 40.0, [35.0, 50.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 30.0, [10.0, 34.0], "friction of joint and rock"),
+        Parameter::new("phi_rock_deg", "°", 45.0, [35.0, 60.0], "the other rock's"),
+        Parameter::new("c", "Pa", 1e6, [2e5, 5e6], "cohesion of rock"),
+        Parameter::new("k", "", 0.06, [0.03, 0.2], "share of rock"),
+        Parameter::new("weight", "N/m", 1e6, [2e5, 1.5e6], "weight of the block"),
+        Parameter::new("mesh", "m", 1.4, [0.6, 1.6], "mesh size"),
+        Parameter::new("turn_deg", "°", 8.0, [0.0, 60.0], "angle of the mesh"),
     ],
     quick: true,
     implicit: false,
@@ -84,30 +82,26 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let ductile = text(setup, k, 0.5 * LENGTH, phi, DUCTILE);
     let bound = bound_of(setup, "ductile", ductile.clone())?.level_tops.factor.value();
     let reason = "the bracket of limit analysis is 2e-5 wide";
-    let mut rows =
-        vec![Row::new("equal friction: limit analysis", "", bound, equal).within(Tolerance::Relative(1e-4), reason)];
+    let mut rows = vec![Row::new("equal friction: limit analysis", "", bound, equal).relative(1e-4, reason)];
     // Under the resultant of the weight, so that the bridge can carry all of it.
     let under = 0.5 * LENGTH + 0.5 * weight / (LENGTH * DENSITY * G) * a.to_radians().tan();
     let other = text(setup, k, under, rock, DUCTILE);
     let all = jennings(setup, k, [rock; 2]);
     let found = bound_of(setup, "other_friction", other)?.level_tops.factor.value();
     let row = Row::new("rock with more friction, under the resultant: limit analysis", "", found, all);
-    rows.push(row.within(Tolerance::Relative(1e-3), "a bridge of some width lets the load lie within it"));
+    rows.push(row.relative(1e-3, "a bridge of some width lets the load lie within it"));
     let sum = jennings(setup, k, [rock, phi]);
     rows.push(Row::new("the same: Jennings' sum, no exact factor", "", sum, all));
     let found = reduce(setup, "ductile", ductile)?;
     let reason = "half of the bracket, and nodes beside the ends of the bridge that have a part of it by length";
-    rows.push(
-        Row::new("equal friction: strength reduction", "", factor(&found), equal)
-            .within(Tolerance::Relative(5e-3), reason),
-    );
+    rows.push(Row::new("equal friction: strength reduction", "", factor(&found), equal).relative(5e-3, reason));
     let mut reductions = vec![found];
     if !setup.quick {
         let brittle = text(setup, k, 0.5 * LENGTH, phi, BRITTLE);
         let brittle = reduce(setup, "brittle", brittle)?;
         let above = (factor(&brittle) / factor(&reductions[0]) - 1.0).max(0.0);
         let row = Row::new("brittle over ductile factor, less 1, if above 0", "", above, 0.0);
-        rows.push(row.within(Tolerance::AtMost(2e-3), "the brackets are 0.2 % wide"));
+        rows.push(row.at_most(2e-3, "the brackets are 0.2 % wide"));
         reductions.push(brittle);
     }
     rows.push(ledger_row(&reductions.iter().collect::<Vec<_>>()));
@@ -118,33 +112,23 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
 /// Jennings' factor over the share of rock, with equal and with different friction.
 fn shares(setup: &Setup) -> Plot {
     let [phi, rock] = ["phi_deg", "phi_rock_deg"].map(|name| setup.get(name));
-    let series = |name: &str, angles: [f64; 2]| {
-        let points = (0..=20).map(|k| 0.005 * f64::from(k)).map(|k| [k, jennings(setup, k, angles)]).collect();
-        Series { name: name.to_owned(), points, marks: false }
+    let factors = |angles: [f64; 2]| -> Vec<[f64; 2]> {
+        (0..=20).map(|k| 0.005 * f64::from(k)).map(|k| [k, jennings(setup, k, angles)]).collect()
     };
-    Plot {
-        title: "Factor over the share of rock".into(),
-        axes: ["k".into(), "factor of safety".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            series("equal friction: exact", [phi; 2]),
-            series("friction of rock on all: where the bridge carries the weight", [rock; 2]),
-            series("Jennings' sum with both angles", [rock, phi]),
-        ],
-    }
+    Plot::new("Factor over the share of rock", ["k", "factor of safety"])
+        .line("equal friction: exact", factors([phi; 2]))
+        .line("friction of rock on all: where the bridge carries the weight", factors([rock; 2]))
+        .line("Jennings' sum with both angles", factors([rock, phi]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Values;
-    use enmm::model::case::Integrator;
 
     /// F = 0.688059 + 15.5572·k, so that k = 2.00512 % holds the block.
     #[test]
     fn jennings_factor_is_that_of_numbers_worked_out_twice() {
-        let setup =
-            Setup { values: Values::of(&PROBLEM), integrator: Integrator::Explicit, quick: true, cases: Vec::new() };
+        let setup = Setup::of(&PROBLEM, true);
         let factor = |k| jennings(&setup, k, [30.0; 2]);
         assert!((factor(0.0) - 0.688059).abs() < 1e-6);
         assert!((factor(1.0) - factor(0.0) - 15.5572).abs() < 1e-4);

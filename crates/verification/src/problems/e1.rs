@@ -4,7 +4,7 @@ use enmm::model::case::Integrator;
 use enmm::model::{Simulation, StepReport};
 
 use crate::slope::{Totals, block_displacements, difference, fail, slope_text};
-use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Origin, Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "E1",
@@ -13,15 +13,9 @@ pub const PROBLEM: Problem = Problem {
              energies. `cargo xtask compare` sets their cost side by side. Catches whatever one of them does wrong \
              alone",
     parameters: &[
-        Parameter { name: "spacing", unit: "m", default: 6.4, range: [3.0, 30.0], doc: "spacing of both joint sets" },
-        Parameter {
-            name: "spacing_failing",
-            unit: "m",
-            default: 12.0,
-            range: [3.0, 30.0],
-            doc: "the same of a slope that fails",
-        },
-        Parameter { name: "t", unit: "s", default: 1.0, range: [0.2, 3.0], doc: "time for which it fails" },
+        Parameter::new("spacing", "m", 6.4, [3.0, 30.0], "spacing of both joint sets"),
+        Parameter::new("spacing_failing", "m", 12.0, [3.0, 30.0], "the same of a slope that fails"),
+        Parameter::new("t", "s", 1.0, [0.2, 3.0], "time for which it fails"),
     ],
     quick: true,
     implicit: false,
@@ -75,25 +69,18 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome) -> Result<(), Trouble> {
     let path = "friction remembers its path: dynamic relaxation and static steps load joints in another order";
     outcome.rows.extend([
         Row::new("places of all blocks, rms difference over rms displacement", "", apart, 0.0)
-            .within(Tolerance::AtMost(0.05), path)
+            .at_most(0.05, path)
             .from(ORIGIN),
         Row::new("sum of the normal forces of all contacts", "N/m", implicit.1, explicit.1)
-            .within(Tolerance::Relative(0.05), path)
+            .relative(0.05, path)
             .from(ORIGIN),
         Row::new("potential energy released", "J/m", implicit.2, explicit.2)
-            .within(Tolerance::Relative(0.02), "the total hardly knows the path")
+            .relative(0.02, "the total hardly knows the path")
             .from(ORIGIN),
     ]);
     let points = |k: usize| found[k].0.iter().enumerate().map(|(b, u)| [b as f64, u.norm()]).collect();
-    outcome.plots.push(Plot {
-        title: "E1: displacement of every block".into(),
-        axes: ["block [-]".into(), "displacement [m]".into()],
-        logarithmic: [false; 2],
-        series: vec![
-            Series { name: "explicit".into(), points: points(0), marks: true },
-            Series { name: "implicit".into(), points: points(1), marks: true },
-        ],
-    });
+    let plot = Plot::new("E1: displacement of every block", ["block [-]", "displacement [m]"]);
+    outcome.plots.push(plot.marks("explicit", points(0)).marks("implicit", points(1)));
     Ok(())
 }
 
@@ -110,7 +97,7 @@ fn failure(setup: &mut Setup, outcome: &mut Outcome) -> Result<(), Trouble> {
                   the motion as a whole is that of gravity against friction";
     for (k, (name, unit)) in Totals::NAMES.into_iter().enumerate() {
         let row = Row::new(format!("failing for {seconds} s: {name}"), unit, found[1][k], found[0][k]);
-        outcome.rows.push(row.within(Tolerance::Relative(0.05), reason).from(ORIGIN));
+        outcome.rows.push(row.relative(0.05, reason).from(ORIGIN));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
-use crate::{Outcome, Parameter, Plot, Problem, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Plot, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "E2",
@@ -11,11 +11,11 @@ pub const PROBLEM: Problem = Problem {
     source: "What stands stays: no drift, no kinetic energy, thin overlaps. Catches creep, false slip, contacts that \
              feed energy, and bodies that sink into each other",
     parameters: &[
-        Parameter { name: "columns", unit: "", default: 20.0, range: [2.0, 30.0], doc: "bricks in a course" },
-        Parameter { name: "courses", unit: "", default: 20.0, range: [2.0, 30.0], doc: "courses" },
-        Parameter { name: "seconds", unit: "s", default: 12.0, range: [1.0, 60.0], doc: "time at rest" },
-        Parameter { name: "friction_deg", unit: "°", default: 35.0, range: [10.0, 60.0], doc: "friction angle" },
-        Parameter { name: "young", unit: "Pa", default: 1e9, range: [1e8, 1e11], doc: "Young's modulus" },
+        Parameter::new("columns", "", 20.0, [2.0, 30.0], "bricks in a course"),
+        Parameter::new("courses", "", 20.0, [2.0, 30.0], "courses"),
+        Parameter::new("seconds", "s", 12.0, [1.0, 60.0], "time at rest"),
+        Parameter::new("friction_deg", "°", 35.0, [10.0, 60.0], "friction angle"),
+        Parameter::new("young", "Pa", 1e9, [1e8, 1e11], "Young's modulus"),
     ],
     quick: true,
     implicit: true,
@@ -86,7 +86,7 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome, name: &str, text: String, seco
     }
     let Some(report) = last else { return Err(Trouble("e2: no step was taken".into())) };
     let row = |what: &str, unit, value, most, why: &str| {
-        Row::new(format!("{name}: {what}"), unit, value, 0.0).within(Tolerance::AtMost(most), why)
+        Row::new(format!("{name}: {what}"), unit, value, 0.0).at_most(most, why)
     };
     let drift = drift(&simulation, &before);
     outcome.rows.extend([
@@ -102,12 +102,8 @@ fn rest(setup: &mut Setup, outcome: &mut Outcome, name: &str, text: String, seco
     ]);
     let ledger = Row::ledger(&report);
     outcome.rows.push(Row { quantity: format!("{name}: {}", ledger.quantity), ..ledger });
-    outcome.plots.push(Plot {
-        title: format!("E2: kinetic energy of the {name}"),
-        axes: ["time [s]".into(), "kinetic energy [J/m]".into()],
-        logarithmic: [false, true],
-        series: vec![Series { name: "computed".into(), points: energy, marks: false }],
-    });
+    let plot = Plot::new(format!("E2: kinetic energy of the {name}"), ["time [s]", "kinetic energy [J/m]"]);
+    outcome.plots.push(plot.line("computed", energy).logarithmic([false, true]));
     Ok(())
 }
 

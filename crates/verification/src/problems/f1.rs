@@ -1,7 +1,7 @@
 //! F1: limit analysis of a block on an incline.
 
-use super::limit::{Scene, block_on_plane, bound_of, factor_rows};
-use crate::{Outcome, Parameter, Problem, Row, Setup, Tolerance, Trouble};
+use super::limit::{Scene, bound_of, factor_rows};
+use crate::{Outcome, Parameter, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "F1",
@@ -9,17 +9,11 @@ pub const PROBLEM: Problem = Problem {
     source: "tan φ/tan a, and the direction in which the block leaves, φ/F above the plane; catches wrong weights, \
              normals and multipliers",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "dip of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 35.0, range: [1.0, 70.0], doc: "friction" },
-        Parameter { name: "length", unit: "m", default: 4.0, range: [0.5, 50.0], doc: "length along the plane" },
-        Parameter {
-            name: "height",
-            unit: "m",
-            default: 2.0,
-            range: [0.2, 20.0],
-            doc: "height, below length/tan a: no toppling",
-        },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 60.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 35.0, [1.0, 70.0], "friction"),
+        Parameter::new("length", "m", 4.0, [0.5, 50.0], "length along the plane"),
+        Parameter::new("height", "m", 2.0, [0.2, 20.0], "height, below length/tan a: no toppling"),
+        Parameter::new("gamma", "N/m³", 25e3, [5e3, 5e4], "unit weight"),
     ],
     quick: true,
     implicit: false,
@@ -27,28 +21,13 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
-    let [a, phi, length, height] = ["a_deg", "phi_deg", "length", "height"].map(|name| setup.get(name));
-    let (outline, joint) = block_on_plane(length, height);
-    let scene = Scene {
-        dip_deg: a,
-        outline,
-        joints: vec![(joint, "joint")],
-        laws: vec![("joint", phi, 0.0)],
-        held: vec![[-0.25 * length, -0.5 * height]],
-        unit_weight: setup.get("gamma"),
-        seismic: 0.0,
-        size: 0.45 * height,
-    };
-    if a.to_radians().tan() > length / height {
-        return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
-    }
+    let [a, phi] = ["a_deg", "phi_deg"].map(|name| setup.get(name));
+    let scene = Scene::block(setup, 0.0)?;
     let bound = bound_of(setup, "block_on_incline", scene.text("Limit analysis of a block on an incline"))?;
     let mut rows = factor_rows("", &bound, phi.to_radians().tan() / a.to_radians().tan()).to_vec();
     // At the limit the reduced friction angle is the dip: the block that dilates by it leaves level.
     let leaves = bound.associated.mechanism.first().map_or(f64::NAN, |block| block.velocity.y.atan2(block.velocity.x));
     let reason = "the mechanism is that of a factor within 2e-5 of the limit";
-    rows.push(
-        Row::new("direction of the block from level", "rad", leaves, 0.0).within(Tolerance::AtMost(1e-4), reason),
-    );
+    rows.push(Row::new("direction of the block from level", "rad", leaves, 0.0).at_most(1e-4, reason));
     Ok(Outcome { rows, ..Outcome::default() })
 }

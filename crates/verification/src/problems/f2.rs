@@ -1,6 +1,6 @@
 //! F2: limit analysis of a block held by cohesion.
 
-use super::limit::{Scene, block_on_plane, bound_of, factor_rows};
+use super::limit::{Scene, bound_of, factor_rows};
 use crate::{Outcome, Parameter, Problem, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -8,18 +8,12 @@ pub const PROBLEM: Problem = Problem {
     title: "Limit analysis: block with cohesion",
     source: "(c·L + W·cos a·tan φ)/(W·sin a); catches a wrong length, or cohesion that is not divided by the factor",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "dip of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 35.0, range: [0.0, 70.0], doc: "friction" },
-        Parameter { name: "cohesion", unit: "Pa", default: 20e3, range: [0.0, 1e6], doc: "cohesion" },
-        Parameter { name: "length", unit: "m", default: 4.0, range: [0.5, 50.0], doc: "length along the plane" },
-        Parameter {
-            name: "height",
-            unit: "m",
-            default: 2.0,
-            range: [0.2, 20.0],
-            doc: "height, below length/tan a: no toppling",
-        },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 60.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 35.0, [0.0, 70.0], "friction"),
+        Parameter::new("cohesion", "Pa", 20e3, [0.0, 1e6], "cohesion"),
+        Parameter::new("length", "m", 4.0, [0.5, 50.0], "length along the plane"),
+        Parameter::new("height", "m", 2.0, [0.2, 20.0], "height, below length/tan a: no toppling"),
+        Parameter::new("gamma", "N/m³", 25e3, [5e3, 5e4], "unit weight"),
     ],
     quick: true,
     implicit: false,
@@ -29,21 +23,8 @@ pub const PROBLEM: Problem = Problem {
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let [a, phi, cohesion] = ["a_deg", "phi_deg", "cohesion"].map(|name| setup.get(name));
     let [length, height, unit_weight] = ["length", "height", "gamma"].map(|name| setup.get(name));
-    let (outline, joint) = block_on_plane(length, height);
-    let scene = Scene {
-        dip_deg: a,
-        outline,
-        joints: vec![(joint, "joint")],
-        laws: vec![("joint", phi, cohesion)],
-        held: vec![[-0.25 * length, -0.5 * height]],
-        unit_weight,
-        seismic: 0.0,
-        size: 0.45 * height,
-    };
+    let scene = Scene::block(setup, cohesion)?;
     let (s, c) = a.to_radians().sin_cos();
-    if s / c > length / height {
-        return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
-    }
     let weight = unit_weight * length * height;
     let exact = (cohesion * length + weight * c * phi.to_radians().tan()) / (weight * s);
     let bound = bound_of(setup, "block_with_cohesion", scene.text("Limit analysis of a block with cohesion"))?;

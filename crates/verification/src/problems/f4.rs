@@ -10,11 +10,11 @@ pub const PROBLEM: Problem = Problem {
              it rides up one side for tan φ/F = tan(atan k − b); catches a search without end, and corners in a notch \
              that press on one side only",
     parameters: &[
-        Parameter { name: "b_deg", unit: "°", default: 30.0, range: [5.0, 60.0], doc: "dip of both sides" },
-        Parameter { name: "phi_deg", unit: "°", default: 20.0, range: [1.0, 70.0], doc: "friction" },
-        Parameter { name: "k", unit: "", default: 0.9, range: [0.1, 5.0], doc: "acceleration over g, above tan b" },
-        Parameter { name: "depth", unit: "m", default: 3.0, range: [0.5, 50.0], doc: "depth of the notch" },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
+        Parameter::new("b_deg", "°", 30.0, [5.0, 60.0], "dip of both sides"),
+        Parameter::new("phi_deg", "°", 20.0, [1.0, 70.0], "friction"),
+        Parameter::new("k", "", 0.9, [0.1, 5.0], "acceleration over g, above tan b"),
+        Parameter::new("depth", "m", 3.0, [0.5, 50.0], "depth of the notch"),
+        Parameter::new("gamma", "N/m³", 25e3, [5e3, 5e4], "unit weight"),
     ],
     quick: true,
     implicit: false,

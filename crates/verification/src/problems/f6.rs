@@ -1,7 +1,7 @@
 //! F6: limit analysis of a column that topples against a block that slides.
 
 use super::limit::{Scene, bound_of, factor_rows};
-use crate::{Outcome, Parameter, Problem, Row, Setup, Tolerance, Trouble};
+use crate::{Outcome, Parameter, Problem, Row, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
     id: "F6",
@@ -10,14 +10,14 @@ pub const PROBLEM: Problem = Problem {
              lower block, which slides for tan φ/F = (W2·sin a + P)/(W2·cos a); the joint between them is smooth; \
              alone, the column falls whatever its strength; catches wrong moments and ends of interfaces",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 45.0], doc: "dip of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 50.0, range: [1.0, 70.0], doc: "friction below the block" },
-        Parameter { name: "phi_base_deg", unit: "°", default: 75.0, range: [1.0, 80.0], doc: "same, of the column" },
-        Parameter { name: "width", unit: "m", default: 1.0, range: [0.1, 10.0], doc: "b1, width of the column" },
-        Parameter { name: "height", unit: "m", default: 5.0, range: [0.2, 50.0], doc: "h1, height of the column" },
-        Parameter { name: "length", unit: "m", default: 8.0, range: [0.5, 100.0], doc: "length of the block" },
-        Parameter { name: "low", unit: "m", default: 2.0, range: [0.1, 50.0], doc: "h2, height of the block" },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 45.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 50.0, [1.0, 70.0], "friction below the block"),
+        Parameter::new("phi_base_deg", "°", 75.0, [1.0, 80.0], "same, of the column"),
+        Parameter::new("width", "m", 1.0, [0.1, 10.0], "b1, width of the column"),
+        Parameter::new("height", "m", 5.0, [0.2, 50.0], "h1, height of the column"),
+        Parameter::new("length", "m", 8.0, [0.5, 100.0], "length of the block"),
+        Parameter::new("low", "m", 2.0, [0.1, 50.0], "h2, height of the block"),
+        Parameter::new("gamma", "N/m³", 25e3, [5e3, 5e4], "unit weight"),
     ],
     quick: true,
     implicit: false,
@@ -73,6 +73,6 @@ fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
     let mut rows = factor_rows("", &bound, factor).to_vec();
     let alone = bound_of(setup, "column_alone", alone)?.level_tops.factor.value();
     let reason = "no strength holds it: factors below 0.001 are told from none";
-    rows.push(Row::new("factor of the column alone", "", alone, 0.0).within(Tolerance::AtMost(1e-3), reason));
+    rows.push(Row::new("factor of the column alone", "", alone, 0.0).at_most(1e-3, reason));
     Ok(Outcome { rows, ..Outcome::default() })
 }

@@ -1,6 +1,6 @@
 //! F7: limit analysis of a block whose front lies over a joint of its base.
 
-use super::limit::{Scene, block_on_plane, bound_of, endless_row, factor_rows};
+use super::limit::{Scene, bound_of, endless_row, factor_rows};
 use crate::{Outcome, Parameter, Problem, Setup, Trouble};
 
 pub const PROBLEM: Problem = Problem {
@@ -10,18 +10,12 @@ pub const PROBLEM: Problem = Problem {
              pass, tan φ/tan a; held to both facets of the corner that it faces there it would never move; catches \
              facets on the wrong side and corners that catch",
     parameters: &[
-        Parameter { name: "a_deg", unit: "°", default: 30.0, range: [5.0, 45.0], doc: "dip of the plane" },
-        Parameter { name: "phi_deg", unit: "°", default: 35.0, range: [1.0, 70.0], doc: "friction" },
-        Parameter { name: "length", unit: "m", default: 4.0, range: [0.5, 50.0], doc: "length of the block" },
-        Parameter {
-            name: "height",
-            unit: "m",
-            default: 2.0,
-            range: [0.2, 20.0],
-            doc: "height, below length/tan a: no toppling",
-        },
-        Parameter { name: "lean", unit: "", default: 0.0, range: [0.0, 0.5], doc: "cot of the joint to the plane" },
-        Parameter { name: "gamma", unit: "N/m³", default: 25e3, range: [5e3, 5e4], doc: "unit weight" },
+        Parameter::new("a_deg", "°", 30.0, [5.0, 45.0], "dip of the plane"),
+        Parameter::new("phi_deg", "°", 35.0, [1.0, 70.0], "friction"),
+        Parameter::new("length", "m", 4.0, [0.5, 50.0], "length of the block"),
+        Parameter::new("height", "m", 2.0, [0.2, 20.0], "height, below length/tan a: no toppling"),
+        Parameter::new("lean", "", 0.0, [0.0, 0.5], "cot of the joint to the plane"),
+        Parameter::new("gamma", "N/m³", 25e3, [5e3, 5e4], "unit weight"),
     ],
     quick: true,
     implicit: false,
@@ -29,23 +23,11 @@ pub const PROBLEM: Problem = Problem {
 };
 
 fn run(setup: &mut Setup) -> Result<Outcome, Trouble> {
-    let [a, phi, length, height] = ["a_deg", "phi_deg", "length", "height"].map(|name| setup.get(name));
-    let [tan_a, tan_phi] = [a, phi].map(|angle| angle.to_radians().tan());
-    if tan_a > length / height {
-        return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
-    }
-    let (outline, joint) = block_on_plane(length, height);
-    let foot = [length + setup.get("lean") * height, -height];
-    let scene = Scene {
-        dip_deg: a,
-        outline,
-        joints: vec![(joint, "joint"), (vec![[length, 0.0], foot], "joint")],
-        laws: vec![("joint", phi, 0.0)],
-        held: vec![[-0.25 * length, -0.5 * height], [1.9 * length, -0.5 * height]],
-        unit_weight: setup.get("gamma"),
-        seismic: 0.0,
-        size: 0.45 * height,
-    };
+    let [tan_a, tan_phi] = ["a_deg", "phi_deg"].map(|name| setup.get(name).to_radians().tan());
+    let [length, height, lean] = ["length", "height", "lean"].map(|name| setup.get(name));
+    let mut scene = Scene::block(setup, 0.0)?;
+    scene.joints.push((vec![[length, 0.0], [length + lean * height, -height]], "joint"));
+    scene.held.push([1.9 * length, -0.5 * height]);
     let bound = bound_of(setup, "block_over_crossing", scene.text("Limit analysis of a block over a crossing"))?;
     let mut rows = factor_rows("", &bound, tan_phi / tan_a).to_vec();
     rows.push(endless_row("factor when every corner catches", bound.catching.factor.value()));

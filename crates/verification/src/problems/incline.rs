@@ -3,7 +3,7 @@
 use enmm_stability::strength_reduction::{Reduction, ReductionOptions, factor_of_safety};
 
 pub use super::block::G;
-use crate::{Plot, Row, Series, Setup, Tolerance, Trouble};
+use crate::{Plot, Row, Setup, Trouble};
 
 /// Finds the factor of safety of a case; the bracket is 0.2 % wide, or 0.5 % when quick.
 ///
@@ -25,7 +25,7 @@ pub fn reduce(setup: &mut Setup, name: &str, text: String) -> Result<Reduction, 
 
 /// A factor of safety beside its closed form, within 1.5 %.
 pub fn factor_row(quantity: &str, reduction: &Reduction, exact: f64, reason: &str) -> Row {
-    Row::new(quantity, "", reduction.factor().unwrap_or(f64::NAN), exact).within(Tolerance::Relative(0.015), reason)
+    Row::new(quantity, "", reduction.factor().unwrap_or(f64::NAN), exact).relative(0.015, reason)
 }
 
 /// The worst energy ledger of the trials.
@@ -33,7 +33,7 @@ pub fn ledger_row(reductions: &[&Reduction]) -> Row {
     let shares = reductions.iter().map(|reduction| reduction.ledger_residual());
     let reason = "claim A4: the leapfrog's own error is ½(ω dt)² of a mode's energy";
     Row::new("energy ledger of the worst trial, residual over largest term", "", shares.fold(0.0, f64::max), 0.0)
-        .within(Tolerance::AtMost(1e-3), reason)
+        .at_most(1e-3, reason)
 }
 
 /// Displacement of each trial against F, and the exact factor as an upright line.
@@ -41,13 +41,8 @@ pub fn trial_plot(title: &str, reduction: &Reduction, exact: f64) -> Plot {
     let points: Vec<[f64; 2]> = reduction.trials.iter().map(|t| [t.factor, t.displacement.max(1e-9)]).collect();
     let ends = |pick: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p[1]).fold(start, pick);
     let exact = vec![[exact, ends(f64::min, f64::INFINITY)], [exact, ends(f64::max, 0.0)]];
-    Plot {
-        title: title.to_owned(),
-        axes: ["F".to_owned(), "largest displacement at the end of the trial (m)".to_owned()],
-        logarithmic: [false, true],
-        series: vec![
-            Series { name: "trials".to_owned(), points, marks: true },
-            Series { name: "exact factor of safety".to_owned(), points: exact, marks: false },
-        ],
-    }
+    Plot::new(title, ["F", "largest displacement at the end of the trial (m)"])
+        .marks("trials", points)
+        .line("exact factor of safety", exact)
+        .logarithmic([false, true])
 }

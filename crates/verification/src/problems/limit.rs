@@ -4,7 +4,7 @@ use enmm_stability::limit_analysis::{Bound, bound};
 
 use super::block::G;
 use crate::parts::turn;
-use crate::{Row, Setup, Tolerance, Trouble};
+use crate::{Row, Setup, Trouble};
 
 /// Points (m).
 type Line = Vec<[f64; 2]>;
@@ -56,18 +56,35 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// A block on a plane with nothing before it, of the parameters that problems share.
+    ///
+    /// # Errors
+    /// A block that topples.
+    pub fn block(setup: &Setup, cohesion: f64) -> Result<Self, Trouble> {
+        let [a, phi, length, height] = ["a_deg", "phi_deg", "length", "height"].map(|name| setup.get(name));
+        if a.to_radians().tan() > length / height {
+            return Err(Trouble("the block topples: choose a height below length/tan a".to_owned()));
+        }
+        let (outline, joint) = block_on_plane(length, height);
+        Ok(Self {
+            dip_deg: a,
+            outline,
+            joints: vec![(joint, "joint")],
+            laws: vec![("joint", phi, cohesion)],
+            held: vec![[-0.25 * length, -0.5 * height]],
+            unit_weight: setup.get("gamma"),
+            seismic: 0.0,
+            size: 0.45 * height,
+        })
+    }
+}
+
 /// A block on a plane with nothing before it: outline, and the joint below it.
 pub fn block_on_plane(length: f64, height: f64) -> (Line, Line) {
-    let outline = vec![
-        [-0.5 * length, -height],
-        [2.0 * length, -height],
-        [2.0 * length, 0.0],
-        [length, 0.0],
-        [length, height],
-        [0.0, height],
-        [0.0, 0.0],
-        [-0.5 * length, 0.0],
-    ];
+    let [left, right] = [-0.5 * length, 2.0 * length];
+    let mut outline = vec![[left, -height], [right, -height], [right, 0.0]];
+    outline.extend([[length, 0.0], [length, height], [0.0, height], [0.0, 0.0], [left, 0.0]]);
     (outline, vec![[0.0, 0.0], [length, 0.0]])
 }
 
@@ -85,14 +102,13 @@ const REASON: &str = "the bracket is 2e-5 wide, and 2e-7 of a block's weight cou
 
 /// Both bounds beside one closed form.
 pub fn factor_rows(name: &str, bound: &Bound, exact: f64) -> [Row; 2] {
-    let row = |kind: &str, factor: f64| {
-        Row::new(format!("{kind} factor{name}"), "", factor, exact).within(Tolerance::Relative(3e-4), REASON)
-    };
+    let row =
+        |kind: &str, factor: f64| Row::new(format!("{kind} factor{name}"), "", factor, exact).relative(3e-4, REASON);
     [row("associated", bound.associated.factor.value()), row("level tops'", bound.level_tops.factor.value())]
 }
 
 /// A slope that equilibrium holds however weak its joints: the inverse of the factor is zero.
 pub fn endless_row(quantity: &str, factor: f64) -> Row {
     let reason = "factors beyond 1000 are told from no end";
-    Row::new(format!("inverse of the {quantity}"), "", factor.recip(), 0.0).within(Tolerance::AtMost(1e-3), reason)
+    Row::new(format!("inverse of the {quantity}"), "", factor.recip(), 0.0).at_most(1e-3, reason)
 }

@@ -4,8 +4,8 @@ use enmm::geometry::Vector;
 use enmm::model::Simulation;
 
 use super::block::G;
-use crate::Trouble;
 use crate::parts::rock;
+use crate::{Setup, Trouble};
 
 /// Geometry, strength and loads; the toe is at the origin and the slope falls to the left.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +41,27 @@ pub struct PlaneSlide {
 }
 
 impl PlaneSlide {
+    /// A dry slope with one plane of the dip `plane` (degrees) and no crack, from the parameters that problems share.
+    pub fn of(setup: &Setup, plane: f64, unit_weight: f64) -> Self {
+        let height = setup.get("height");
+        Self {
+            height,
+            crack: 0.0,
+            face: setup.get("face_deg").to_radians(),
+            plane: plane.to_radians(),
+            cohesion: setup.get("cohesion"),
+            friction: setup.get("phi_deg").to_radians(),
+            unit_weight,
+            water_weight: 1e3 * G,
+            water: 0.0,
+            seismic: 0.0,
+            young: 2e10,
+            size: 0.12 * height,
+            planes: 1,
+            spacing: height,
+        }
+    }
+
     /// Length of the plane (m).
     pub fn length(&self) -> f64 {
         (self.height - self.crack) / self.plane.sin()
@@ -55,12 +76,20 @@ impl PlaneSlide {
     /// Factor of safety of the wedge as one rigid body, Hoek and Bray's formula with a seismic coefficient:
     /// (cA + (W(cos ψ − k sin ψ) − U − V sin ψ)·tan φ)/(W(sin ψ + k cos ψ) + V cos ψ).
     pub fn factor(&self) -> f64 {
+        self.bolted_factor(0.0, 0.0)
+    }
+
+    /// The same with the tension of all bolts (N/m), which fall by `delta` (rad) into the slope: T·sin(ψ + δ) more
+    /// normal force, T·cos(ψ + δ) less drive.
+    pub fn bolted_factor(&self, tension: f64, delta: f64) -> f64 {
         let (s, c) = self.plane.sin_cos();
+        let (pull_s, pull_c) = (self.plane + delta).sin_cos();
         let uplift = 0.5 * self.water_weight * self.water * self.length();
         let push = 0.5 * self.water_weight * self.water.powi(2);
         let (weight, k) = (self.weight(), self.seismic);
-        let normal = weight * (c - k * s) - uplift - push * s;
-        (self.cohesion * self.length() + normal * self.friction.tan()) / (weight * (s + k * c) + push * c)
+        let normal = weight * (c - k * s) - uplift - push * s + tension * pull_s;
+        let drive = weight * (s + k * c) + push * c - tension * pull_c;
+        (self.cohesion * self.length() + normal * self.friction.tan()) / drive
     }
 
     /// Where the plane ends: at the foot of the crack, or at the surface.

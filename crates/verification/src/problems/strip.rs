@@ -114,6 +114,65 @@ impl Strip<'_> {
     }
 }
 
+/// A strip of one and a half wave lengths with a joint half way, or without one, between quiet boundaries.
+#[derive(Debug, Clone, Copy)]
+pub struct Jointed {
+    pub rock: Rock,
+    pub wave: Wave,
+    /// Wave length (m).
+    pub length: f64,
+    /// Mesh size (m).
+    pub size: f64,
+    /// Whether the joint runs across elements, or else along a row of the lattice.
+    pub across: bool,
+}
+
+impl Jointed {
+    /// Rock, wave length and mesh of the parameters that problems share.
+    pub fn of(setup: &Setup, wave: Wave) -> Self {
+        let [young, poisson, density, length] = ["young", "poisson", "density", "length"].map(|n| setup.get(n));
+        let rock = Rock { density, young, poisson };
+        Self { rock, wave, length, size: length / setup.get("elements"), across: false }
+    }
+
+    /// Runs to time `until` (s) with a joint of this stiffness (Pa/m) and strength (keys of a law), and rows of the
+    /// incident wave times `amplitude` (m/s); monitors stand a quarter of the length below and above the joint.
+    ///
+    /// # Errors
+    /// The case does not fit, or the run fails.
+    pub fn run(
+        &self,
+        setup: &mut Setup,
+        name: &str,
+        joint: Option<(f64, &str)>,
+        (rows, amplitude): (&[[f64; 2]], f64),
+        until: f64,
+    ) -> Result<Motion, Trouble> {
+        let (height, size) = (1.5 * self.length, self.size);
+        let (monitors, middle) = ([0.5 * self.length, self.length], 0.5 * height);
+        let shift = if self.across { [0.23 * size, 0.37 * size] } else { [0.0; 2] };
+        let mut strip = Strip {
+            wave: self.wave,
+            rock: self.rock,
+            height,
+            size,
+            origin: [shift[0], middle + shift[1]],
+            monitors: &monitors,
+            duration: 2.0 * until,
+            extra: String::new(),
+        };
+        strip.extra = strip.foot(rows, amplitude) + &strip.quiet_head();
+        if let Some((k, strength)) = joint {
+            strip.extra += &format!(
+                "[[joint]]\npoints = [[-{size}, {middle}], [{far}, {middle}]]\n[joint_law.joint]\nfriction_deg = 0.0\n\
+                 normal_stiffness = {k:e}\nshear_stiffness = {k:e}\n{strength}",
+                far = 3.0 * size
+            );
+        }
+        run(setup, name, &strip, until)
+    }
+}
+
 /// Motion of the monitors over time.
 #[derive(Debug, Clone, Default)]
 pub struct Motion {

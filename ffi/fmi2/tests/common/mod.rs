@@ -1,82 +1,43 @@
 //! An importer of FMI 2 that calls the C functions.
 
+#[path = "../../../fmi/tests/boxed/mod.rs"]
+mod boxed;
+
 use std::ffi::{CStr, CString, c_void};
-use std::path::Path;
 use std::sync::Mutex;
 
-use enmm_fmi::table::{Table, Version};
+use enmm_fmi::table::Version;
 use enmm_fmi2::*;
-use enmm_io::{LoadedCase, parse_case};
 
+pub use boxed::{Fmu, Line, assert_exports, doubts};
+
+const VERSION: Version = Version::Two;
 pub const OK: Status = Status::Ok;
 pub const ERROR: Status = Status::Error;
 
-/// Resources and table of an FMU.
-pub struct Fmu {
-    pub folder: tempfile::TempDir,
-    pub table: Table,
-}
-
 impl Fmu {
-    fn of(loaded: LoadedCase) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let resources = folder.path().join("resources");
-        write_resources(&loaded, &resources);
-        let blocks = loaded.cosimulation().unwrap().block_states().len();
-        let table = Table::new(&loaded.case, blocks, &loaded.hash, Version::Two);
-        Self { folder, table }
-    }
-
-    pub fn boxed() -> Self {
-        Self::of(parse_case(include_str!("box.toml"), "box.toml", Path::new(".")).unwrap())
-    }
-
-    /// The box of rock of 50 Pa instead of 10 GPa, which comes to rest within two steps by an energy that is not there.
-    pub fn soft() -> Self {
-        let text = include_str!("box.toml").replace("young = 10e9", "young = 50");
-        let text = text.replace("duration = 1.0", "duration = 5.0").replace("duration = 0.5", "duration = 50.0");
-        let text = text.replace("communication_step = 0.01", "");
-        Self::of(parse_case(&text, "soft.toml", Path::new(".")).unwrap())
-    }
-
-    pub fn reference(&self, name: &str) -> u32 {
-        let found = self.table.variables.iter().find(|v| v.name == name);
-        found.unwrap_or_else(|| panic!("no variable {name}")).reference
-    }
-
-    pub fn uri(&self) -> String {
-        format!("file://{}/resources", self.folder.path().display())
-    }
-
     pub fn instance(&self) -> Instance<'_> {
-        self.instantiate(&self.table.token, &self.uri(), 1, false).unwrap()
+        self.instantiate(false)
     }
 
-    pub fn instantiate(&self, token: &str, uri: &str, kind: i32, logging: bool) -> Result<Instance<'_>, Vec<Line>> {
+    pub fn instantiate(&self, logging: bool) -> Instance<'_> {
         let log = Box::new(Log::default());
-        let (token, uri) = (CString::new(token).unwrap(), CString::new(uri).unwrap());
+        let token = CString::new(self.table.token.as_str()).unwrap();
+        let uri = CString::new(format!("file://{}", self.resources().display())).unwrap();
         let functions = CallbackFunctions {
             logger: Some(logger()),
             component_environment: (&raw const *log).cast_mut().cast(),
             ..CallbackFunctions::NONE
         };
-        let name = c"box".as_ptr();
+        let (name, logging) = (c"box".as_ptr(), i32::from(logging));
         let component =
-            unsafe { fmi2Instantiate(name, kind, token.as_ptr(), uri.as_ptr(), &functions, 0, i32::from(logging)) };
-        if component.is_null() {
-            return Err(log.lines.lock().unwrap().clone());
-        }
-        Ok(Instance { fmu: self, component, log })
+            unsafe { fmi2Instantiate(name, CO_SIMULATION, token.as_ptr(), uri.as_ptr(), &functions, 0, logging) };
+        assert!(!component.is_null(), "{:?}", log.lines);
+        Instance { fmu: self, component, log }
     }
 }
 
-pub fn write_resources(loaded: &LoadedCase, resources: &Path) {
-    std::fs::create_dir_all(resources).unwrap();
-    std::fs::write(resources.join("case.json"), enmm_fmi::resource::encode(loaded, "case").unwrap()).unwrap();
-}
-
-pub type Line = (Status, String, String);
-
+/// Messages of an instance.
 #[derive(Default)]
 pub struct Log {
     pub lines: Mutex<Vec<Line>>,

@@ -1,55 +1,25 @@
 //! An importer of FMI 3 that calls the C functions.
 
+#[path = "../../../fmi/tests/boxed/mod.rs"]
+mod boxed;
+
 use std::ffi::{CStr, CString, c_void};
-use std::path::{Path, PathBuf};
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering::Relaxed};
 
-use enmm_fmi::table::{Table, Version};
+use enmm_fmi::table::Version;
 use enmm_fmi3::*;
-use enmm_io::{LoadedCase, parse_case};
 
+pub use boxed::{BOX, Fmu, Line, assert_exports, doubts};
+
+const VERSION: Version = Version::Three;
 pub const OK: Status = Status::Ok;
 pub const ERROR: Status = Status::Error;
 
-/// Resources and table of an FMU.
-pub struct Fmu {
-    pub folder: tempfile::TempDir,
-    pub table: Table,
-}
-
 impl Fmu {
-    pub fn of(loaded: LoadedCase) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        write_resources(&loaded, folder.path());
-        let blocks = loaded.cosimulation().unwrap().block_states().len();
-        let table = Table::new(&loaded.case, blocks, &loaded.hash, Version::Three);
-        Self { folder, table }
-    }
-
-    pub fn boxed() -> Self {
-        Self::of(parse_case(include_str!("box.toml"), "box.toml", Path::new(".")).unwrap())
-    }
-
-    /// The box of rock of 50 Pa instead of 10 GPa, which comes to rest within two steps by an energy that is not there.
-    pub fn soft() -> Self {
-        let text = include_str!("box.toml").replace("young = 10e9", "young = 50");
-        let text = text.replace("duration = 1.0", "duration = 5.0").replace("duration = 0.5", "duration = 50.0");
-        let text = text.replace("communication_step = 0.01", "");
-        Self::of(parse_case(&text, "soft.toml", Path::new(".")).unwrap())
-    }
-
-    pub fn reference(&self, name: &str) -> u32 {
-        let found = self.table.variables.iter().find(|v| v.name == name);
-        found.unwrap_or_else(|| panic!("no variable {name}")).reference
-    }
-
-    pub fn path(&self) -> PathBuf {
-        self.folder.path().join("resources/")
-    }
-
     pub fn instance(&self) -> Instance<'_> {
-        self.instantiate(&Options::default()).unwrap()
+        self.instantiate(false, None)
     }
 
     pub fn started(&self) -> Instance<'_> {
@@ -58,76 +28,34 @@ impl Fmu {
         instance
     }
 
-    pub fn instantiate(&self, options: &Options) -> Result<Instance<'_>, Vec<Line>> {
+    pub fn instantiate(&self, logging: bool, update: Option<IntermediateUpdate>) -> Instance<'_> {
         let log = Box::new(Log::default());
-        let token = CString::new(options.token.as_deref().unwrap_or(&self.table.token)).unwrap();
-        let path = options.path.clone().unwrap_or_else(|| self.path());
-        let path = CString::new(path.to_str().unwrap()).unwrap();
+        let token = CString::new(self.table.token.as_str()).unwrap();
+        let path = CString::new(format!("{}/", self.resources().display())).unwrap();
+        let (name, token, path) = (c"box".as_ptr(), token.as_c_str(), path.as_c_str());
+        let (environment, no, take) = ((&raw const *log).cast_mut().cast(), false, Some(take_line as LogMessage));
         let pointer = unsafe {
-            fmi3InstantiateCoSimulation(
-                c"box".as_ptr(),
-                token.as_ptr(),
-                path.as_ptr(),
-                false,
-                options.logging,
-                options.event_mode,
-                options.early_return,
-                options.required.as_ptr(),
-                options.required.len(),
-                (&raw const *log).cast_mut().cast(),
-                Some(take_line),
-                options.update,
-            )
+            let (token, path) = (token.as_ptr(), path.as_ptr());
+            fmi3InstantiateCoSimulation(name, token, path, no, logging, no, no, null(), 0, environment, take, update)
         };
-        if pointer.is_null() {
-            return Err(log.lines.lock().unwrap().clone());
-        }
-        Ok(Instance { fmu: self, pointer, log })
+        assert!(!pointer.is_null(), "{:?}", log.lines);
+        Instance { fmu: self, pointer, log }
     }
 }
 
-pub fn write_resources(loaded: &LoadedCase, folder: &Path) {
-    let resources = folder.join("resources");
-    std::fs::create_dir_all(&resources).unwrap();
-    std::fs::write(resources.join("case.json"), enmm_fmi::resource::encode(loaded, "case").unwrap()).unwrap();
-}
-
-/// Choices of an importer.
-#[derive(Default, Clone)]
-pub struct Options {
-    pub token: Option<String>,
-    pub path: Option<PathBuf>,
-    pub logging: bool,
-    pub event_mode: bool,
-    pub early_return: bool,
-    pub required: Vec<u32>,
-    pub update: Option<IntermediateUpdate>,
-}
-
-pub type Line = (Status, String, String);
-
-/// The environment of an instance: its log, and what its updates do and see.
+/// The environment of an instance: its messages, and what its updates see.
 #[derive(Default)]
 pub struct Log {
     pub lines: Mutex<Vec<Line>>,
     /// Action of the logger at the next message.
     pub meddle: Mutex<Option<Meddle>>,
-    pub updates: Mutex<Updates>,
+    /// The instance whose values an update reads.
+    pub instance: AtomicPtr<c_void>,
+    /// Number of updates.
+    pub updates: AtomicUsize,
 }
 
 pub type Meddle = Box<dyn FnOnce() + Send>;
-
-#[derive(Default)]
-pub struct Updates {
-    pub instance: usize,
-    pub references: Vec<u32>,
-    pub seen: Vec<(f64, Vec<f64>, bool)>,
-    /// Time from which on an early return is requested, and the time that is requested.
-    pub ask: Option<(f64, f64)>,
-    /// Statuses of calls that are illegal within an update.
-    pub illegal: Vec<Status>,
-    pub try_illegal: bool,
-}
 
 unsafe extern "C" fn take_line(environment: *mut c_void, status: Status, category: Text, message: Text) {
     let log = unsafe { &*environment.cast::<Log>() };
@@ -139,32 +67,23 @@ unsafe extern "C" fn take_line(environment: *mut c_void, status: Status, categor
     }
 }
 
+/// An update that reads within the step.
 pub unsafe extern "C" fn update(
     environment: *mut c_void,
-    time: f64,
+    _: f64,
     set_requested: bool,
     get_allowed: bool,
     finished: bool,
-    can_return: bool,
-    wanted: *mut bool,
-    wanted_time: *mut f64,
+    _: bool,
+    _: *mut bool,
+    _: *mut f64,
 ) {
     assert!(!set_requested && get_allowed && finished);
     let log = unsafe { &*environment.cast::<Log>() };
-    let mut updates = log.updates.lock().unwrap();
-    let instance: *mut c_void = updates.instance as *mut c_void;
-    let n = updates.references.len();
-    let mut values = vec![0.0; n];
-    let status = unsafe { fmi3GetFloat64(instance, updates.references.as_ptr(), n, values.as_mut_ptr(), n) };
+    let (mut time, no) = ([0.0; 1], 0);
+    let status = unsafe { fmi3GetFloat64(log.instance.load(Relaxed), null(), no, time.as_mut_ptr(), no) };
     assert_eq!(status, OK);
-    if updates.try_illegal {
-        fmi3FreeInstance(instance);
-        updates.illegal.push(fmi3Reset(instance));
-    }
-    updates.seen.push((time, values, can_return));
-    if let Some((_, at)) = updates.ask.filter(|&(from, _)| time >= from) {
-        unsafe { (wanted.write(true), wanted_time.write(at)) };
-    }
+    log.updates.fetch_add(1, Relaxed);
 }
 
 /// An instance that is freed at the end.

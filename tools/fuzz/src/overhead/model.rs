@@ -8,7 +8,19 @@ use enmm_io::{LoadedCase, parse_case};
 const INCLINE: &str = include_str!("../../../../examples/cases/block_on_incline.toml");
 
 /// Fifty blocks in five courses, which rest.
-const WALL: &str = include_str!("wall.toml");
+const WALL: &str = r#"
+title = "Fifty blocks"
+domain.outline = [[0, 0], [20, 0], [20, 5], [0, 5]]
+mesh = { size = 0.7, angle_deg = 7 }
+rock.rock = { density = 2600, young = 5e9, poisson = 0.25 }
+joint_law.joint.friction_deg = 35
+fix = [{ edge = [[0, 0], [20, 0]] }]
+port = [{ name = "block", block = [1, 4.5] }]
+stage = [
+    { name = "settle", kind = "static", duration = 5.0 },
+    { name = "rest", kind = "dynamic", duration = 1e6, damping = 0.1 },
+]
+"#;
 
 /// A case with its text.
 pub struct Model {
