@@ -87,7 +87,7 @@ fn blocks_slide_down_the_base() {
     let worst = simulation.state().counters.penetration_max / slope.covers.mesh.size;
     assert!(worst < 0.01, "overlap {worst} of the mesh size");
     let [overlap, unheld] = audited.map(|depth| depth / slope.covers.mesh.size);
-    assert!(overlap < 0.01 && unheld < slope.entrance.ledge, "{overlap}, {unheld} without a spring, of the mesh size");
+    assert!(overlap < 0.01 && unheld < slope.detection.ledge, "{overlap}, {unheld} without a spring, of the mesh size");
 }
 
 #[test]
