@@ -403,11 +403,13 @@ fn constant_problem(row: &Constant, files: &[File]) -> Option<String> {
     (!fits).then(|| format!("{at}: `{name}` is not {value} in {file}"))
 }
 
-/// Value in `const NAME: … = VALUE;` or `NAME: VALUE,`.
+/// Value in `const NAME: … = VALUE;`, or of a key with a default, `pub NAME: … = VALUE => …`.
 fn value_of<'a>(line: &'a str, name: &str) -> Option<&'a str> {
     match line.split_once("const ") {
         Some((_, rest)) => rest.strip_prefix(name)?.strip_prefix(": ")?.split_once(" = ")?.1.strip_suffix(';'),
-        None => line.strip_prefix(name)?.strip_prefix(": ")?.strip_suffix(','),
+        None => {
+            line.strip_prefix("pub ")?.strip_prefix(name)?.strip_prefix(": ")?.split_once(" = ")?.1.split(" =>").next()
+        }
     }
 }
 
@@ -973,8 +975,9 @@ fn riddles_are_counted() {
 
 #[test]
 fn constants_rule_is_seen_failing() {
-    let code = "pub(super) const A: f64 = 2.5e-3;\nconst W: [f64; 2] = [2.0, 8_000.0];\n    theta: 4.0,\n\
-        \x20   a_max: 5.0,\nconst M: f64 = 70.0 * std::f64::consts::PI / 180.0;";
+    let code = "pub(super) const A: f64 = 2.5e-3;\nconst W: [f64; 2] = [2.0, 8_000.0];\n\
+        \x20   pub theta: f64 = 4.0 => SHARE,\n    pub a_max: f64 = 5.0,\n\
+        const M: f64 = 70.0 * std::f64::consts::PI / 180.0;";
     let wrong = |name: &str, value: &str| {
         let table = format!(
             "| constant | value | file |\n|---|---|---|\n| `{name}` | {value} | `src/a.rs` |\n\n| `B` | 1 | c |"

@@ -1,74 +1,71 @@
 //! How a drawing becomes a section: what its layers are, and how its coordinates become metres.
 
-use serde::{Deserialize, Serialize};
-
 use super::{Bolt, Case, PointList};
+use crate::keys::shared::HEIGHT;
+use crate::keys::unit::NUMBER;
+use crate::keys::{Range, keys, words};
 
-/// A layer of a DXF drawing.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Layer {
-    /// Part of the section that the lines of the layer are.
-    #[serde(rename = "use")]
-    pub role: LayerUse,
-    /// Joint law by name, of a layer of joints; default `domain.joint_law`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub law: Option<String>,
-    /// Name of the `[[bolt]]` without `points` that the lines of a layer of bolts are.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bolt: Option<String>,
+keys! {
+    /// A layer of a DXF drawing.
+    #[derive(Eq)]
+    pub struct Layer {
+        /// Part of the section that the lines of the layer are.
+        #[serde(rename = "use")]
+        pub role: LayerUse,
+        /// Joint law by name, of a layer of joints; default `domain.joint_law`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub law: Option<String>,
+        /// Name of the `[[bolt]]` without `points` that the lines of a layer of bolts are.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub bolt: Option<String>,
+    }
 }
 
-/// Part of a section that a layer holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum LayerUse {
-    /// Outer loop of the rock.
-    Outline,
-    /// Loops cut out of the outline.
-    Hole,
-    /// Loops of rock inside holes or beside the outline.
-    Island,
-    /// Joint traces.
-    Joint,
-    /// Water table, one line from left to right.
-    Water,
-    /// Bolts, each a straight line from its head to its far end.
-    Bolt,
-    /// Nothing: its entities are counted in a note.
-    Ignore,
+words! {
+    /// Part of a section that a layer holds.
+    pub enum LayerUse {
+        /// Outer loop of the rock.
+        Outline = "outline",
+        /// Loops cut out of the outline.
+        Hole = "hole",
+        /// Loops of rock inside holes or beside the outline.
+        Island = "island",
+        /// Joint traces.
+        Joint = "joint",
+        /// Water table, one line from left to right.
+        Water = "water",
+        /// Bolts, each a straight line from its head to its far end.
+        Bolt = "bolt",
+        /// Nothing: its entities are counted in a note.
+        Ignore = "ignore",
+    }
 }
 
-/// How the coordinates of a geometry file become those of the section: times `scale`, mirrored, then shifted.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Transform {
-    /// Metres in a unit of the drawing; default: what `$INSUNITS` of a DXF drawing says, else 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(example = 0.001))]
-    pub scale: Option<f64>,
-    /// Coordinates whose sign changes, before the shift.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub flip: Option<Flip>,
-    /// Added to x and y (m), last.
-    #[serde(default)]
-    pub shift: [f64; 2],
+keys! {
+    /// How the coordinates of a geometry file become those of the section: times `scale`, mirrored, then shifted.
+    pub default struct Transform {
+        /// Metres in a unit of the drawing; default: what `$INSUNITS` of a DXF drawing says, else 1.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub scale: Option<f64> =>
+            Range::from(1e-6).to(1e6).of(NUMBER).hint("metres in a unit of the drawing: 0.001 for mm").example(0.001),
+        /// Coordinates whose sign changes, before the shift.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub flip: Option<Flip>,
+        /// Added to x and y (m), last.
+        pub shift: [f64; 2] => HEIGHT.hint("what moves the drawing to its place"),
+    }
 }
 
-/// Coordinates whose sign changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Flip {
-    /// x: the section is seen from its other side.
-    X,
-    /// y: the drawing has y down.
-    Y,
-    /// Both.
-    Xy,
+words! {
+    /// Coordinates whose sign changes.
+    pub enum Flip {
+        /// x: the section is seen from its other side.
+        X = "x",
+        /// y: the drawing has y down.
+        Y = "y",
+        /// Both.
+        Xy = "xy",
+    }
 }
 
 /// Share of the mesh size within which curves of a drawing become polylines.

@@ -1,7 +1,7 @@
 //! A number by which equal cases are known.
 
 use super::Case;
-use super::validate::Invalid;
+use super::Invalid;
 
 /// Start and factor of the 64-bit FNV-1a hash.
 const FNV: [u64; 2] = [0xcbf2_9ce4_8422_2325, 0x0000_0100_0000_01b3];

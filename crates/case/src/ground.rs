@@ -2,135 +2,130 @@
 
 use std::path::PathBuf;
 
-use serde::{Deserialize, Serialize};
-
 use super::record::{BaseMotionKind, Baseline, RecordOrigin, RecordReading, WaveMotion};
 use super::{Axes, Case, StageKind, TimeTable};
+use crate::keys::shared::{FACTOR, PLACE, ROWS};
+use crate::keys::unit::SPEED;
+use crate::keys::{Range, keys, words};
+use crate::limits::VELOCITY_MAX;
 
-/// One direction of the plane.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Axis {
-    /// Horizontal.
-    #[default]
-    X,
-    /// Vertical.
-    Y,
+words! {
+    /// One direction of the plane.
+    #[derive(Default)]
+    pub enum Axis {
+        /// Horizontal.
+        #[default]
+        X = "x",
+        /// Vertical.
+        Y = "y",
+    }
 }
 
-/// Motion of the base that carries the model; the model lives in the frame of the base, so that its rock feels the
-/// opposite acceleration.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct BaseMotion {
-    /// Quantity in the rows.
-    #[serde(default)]
-    pub kind: BaseMotionKind,
-    /// Direction.
-    #[serde(default)]
-    pub axis: Axis,
-    /// Rows of time (s) since the start of the stage and value; linear between. Outside them the acceleration is zero:
-    /// a velocity must start at 0 and keeps its last value. This or `file`.
-    #[serde(default)]
-    pub table: Option<TimeTable>,
-    /// File of a record of this kind, relative to the case file: columns of time (s) and value, or a format of the
-    /// agencies.
-    #[serde(default)]
-    pub file: Option<PathBuf>,
-    /// File of a record of acceleration, in place of `kind` and `file`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub acceleration: Option<PathBuf>,
-    /// File of a record of velocity, in place of `kind` and `file`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<PathBuf>,
-    /// File of a record of displacement, in place of `kind` and `file`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub displacement: Option<PathBuf>,
-    /// How the file is read, where it does not say so itself.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub record: Option<RecordReading>,
-    /// Correction of a record that does not end at rest; default: none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub baseline: Option<Baseline>,
-    /// Factor on the values, such as 9.81 for a record in g whose file does not say so.
-    #[serde(default = "one")]
-    pub scale: f64,
-    /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there on.
-    #[serde(default)]
-    pub stage: Option<String>,
-    /// Where the rows come from.
-    #[serde(skip)]
-    pub origin: RecordOrigin,
+keys! {
+    /// Motion of the base that carries the model; the model lives in the frame of the base, so that its rock feels the
+    /// opposite acceleration.
+    pub default struct BaseMotion {
+        /// Quantity in the rows.
+        pub kind: BaseMotionKind,
+        /// Direction.
+        pub axis: Axis,
+        /// Rows of time (s) since the start of the stage and value; linear between. Outside them the acceleration is
+        /// zero: a velocity must start at 0 and keeps its last value. This or `file`.
+        pub table: Option<TimeTable> => ROWS,
+        /// File of a record of this kind, relative to the case file: columns of time (s) and value, or a format of the
+        /// agencies.
+        pub file: Option<PathBuf>,
+        /// File of a record of acceleration, in place of `kind` and `file`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub acceleration: Option<PathBuf>,
+        /// File of a record of velocity, in place of `kind` and `file`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub velocity: Option<PathBuf>,
+        /// File of a record of displacement, in place of `kind` and `file`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub displacement: Option<PathBuf>,
+        /// How the file is read, where it does not say so itself.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub record: Option<RecordReading>,
+        /// Correction of a record that does not end at rest; default: none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub baseline: Option<Baseline>,
+        /// Factor on the values, such as 9.81 for a record in g whose file does not say so.
+        pub scale: f64 = 1.0 => FACTOR,
+        /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there
+        /// on.
+        pub stage: Option<String>,
+        /// Where the rows come from.
+        #[serde(skip)]
+        pub origin: RecordOrigin,
+    }
 }
 
-/// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
-/// holds like a fixity; in dynamic stages its static reactions stay as constant forces.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Quiet {
-    /// The parts of the rock boundary on this segment (m).
-    pub edge: [[f64; 2]; 2],
-    /// Directions that it holds in static stages.
-    #[serde(default)]
-    pub axes: Axes,
-    /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity; with `kind` its direction
-    /// times a factor, [1.0, 0.0] by default.
-    #[serde(default)]
-    pub wave: Option<[f64; 2]>,
-    /// Quantity in the rows along `wave`; default: factors on `wave`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub kind: Option<BaseMotionKind>,
-    /// Rows of time (s) since the start of the stage and factor on `wave`, or value of `kind`; linear between, zero
-    /// outside. This or `file`.
-    #[serde(default)]
-    pub table: Option<TimeTable>,
-    /// File of a record of such rows, relative to the case file: columns of time (s) and value, or a format of the
-    /// agencies.
-    #[serde(default)]
-    pub file: Option<PathBuf>,
-    /// File of a record of acceleration, in place of `kind` and `file`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub acceleration: Option<PathBuf>,
-    /// File of a record of velocity, in place of `kind` and `file`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<PathBuf>,
-    /// File of a record of displacement, in place of `kind` and `file`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub displacement: Option<PathBuf>,
-    /// How the file is read, where it does not say so itself.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub record: Option<RecordReading>,
-    /// Part of the wave that the record shows; default: the incident wave. The motion of an outcrop is halved.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motion: Option<WaveMotion>,
-    /// Correction of a record that does not end at rest; default: none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub baseline: Option<Baseline>,
-    /// Factor on the values.
-    #[serde(default = "one")]
-    pub scale: f64,
-    /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there on.
-    #[serde(default)]
-    pub stage: Option<String>,
-    /// Where the rows come from.
-    #[serde(skip)]
-    pub origin: RecordOrigin,
+keys! {
+    /// A boundary that lets waves leave (viscous, after Lysmer and Kuhlemeyer) and may send one in. In static stages it
+    /// holds like a fixity; in dynamic stages its static reactions stay as constant forces.
+    #[derive(Default)]
+    pub struct Quiet {
+        /// The parts of the rock boundary on this segment (m).
+        pub edge: [[f64; 2]; 2] => PLACE,
+        /// Directions that it holds in static stages.
+        #[serde(default)]
+        pub axes: Axes,
+        /// Direction and amplitude (m/s, global axes) of the incident wave's particle velocity; with `kind` its
+        /// direction times a factor, [1.0, 0.0] by default.
+        pub wave: Option<[f64; 2]> =>
+            Range::within(VELOCITY_MAX).of(SPEED).hint("the particle velocity of the incident wave"),
+        /// Quantity in the rows along `wave`; default: factors on `wave`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub kind: Option<BaseMotionKind>,
+        /// Rows of time (s) since the start of the stage and factor on `wave`, or value of `kind`; linear between, zero
+        /// outside. This or `file`.
+        pub table: Option<TimeTable> => ROWS,
+        /// File of a record of such rows, relative to the case file: columns of time (s) and value, or a format of the
+        /// agencies.
+        pub file: Option<PathBuf>,
+        /// File of a record of acceleration, in place of `kind` and `file`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub acceleration: Option<PathBuf>,
+        /// File of a record of velocity, in place of `kind` and `file`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub velocity: Option<PathBuf>,
+        /// File of a record of displacement, in place of `kind` and `file`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub displacement: Option<PathBuf>,
+        /// How the file is read, where it does not say so itself.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub record: Option<RecordReading>,
+        /// Part of the wave that the record shows; default: the incident wave. The motion of an outcrop is halved.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub motion: Option<WaveMotion>,
+        /// Correction of a record that does not end at rest; default: none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub baseline: Option<Baseline>,
+        /// Factor on the values.
+        #[serde(default = "crate::keys::one")]
+        pub scale: f64 => FACTOR,
+        /// Dynamic stage at whose start the table begins; default: the first one. It acts in dynamic stages from there
+        /// on.
+        pub stage: Option<String>,
+        /// Where the rows come from.
+        #[serde(skip)]
+        pub origin: RecordOrigin,
+    }
 }
 
-/// A column of rock beside a vertical side of the model that moves as the free field does; the side is coupled to it by
-/// a quiet boundary. Its foot moves as the boundary below it: with the base, or as a quiet boundary with its wave.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct FreeField {
-    /// The vertical side (m).
-    pub edge: [[f64; 2]; 2],
-    /// Directions that the side holds in static stages.
-    #[serde(default = "horizontal")]
-    pub axes: Axes,
+keys! {
+    /// A column of rock beside a vertical side of the model that moves as the free field does; the side is coupled to
+    /// it by a quiet boundary. Its foot moves as the boundary below it: with the base, or as a quiet boundary with its
+    /// wave.
+    #[derive(Default)]
+    pub struct FreeField {
+        /// The vertical side (m).
+        pub edge: [[f64; 2]; 2] => PLACE,
+        /// Directions that the side holds in static stages.
+        #[serde(default = "horizontal")]
+        pub axes: Axes,
+    }
 }
 
 /// The keys of a ground motion that name its record and say how it is read.
@@ -198,8 +193,4 @@ impl Case {
 
 fn horizontal() -> Axes {
     Axes::X
-}
-
-fn one() -> f64 {
-    1.0
 }

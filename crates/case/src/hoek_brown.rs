@@ -1,28 +1,30 @@
 //! Generalized Hoek–Brown strength of a rock mass: E. Hoek, C. Carranza-Torres and B. Corkum (2002), with the same
 //! constants in E. Hoek and E. T. Brown (2019).
 
-use serde::{Deserialize, Serialize};
+use crate::keys::unit::{NUMBER, PASCAL};
+use crate::keys::{Range, keys};
 
-/// Generalized Hoek–Brown strength of a rock mass.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct HoekBrown {
-    /// Uniaxial compressive strength of intact rock (Pa), at least 1e4 and at most 1e10.
-    #[cfg_attr(feature = "schema", schemars(example = 50e6))]
-    pub sigma_ci: f64,
-    /// Constant of intact rock, at least 1 and at most 50.
-    #[cfg_attr(feature = "schema", schemars(example = 10.0))]
-    pub mi: f64,
-    /// Geological strength index, at least 1 and at most 100.
-    #[cfg_attr(feature = "schema", schemars(example = 45.0))]
-    pub gsi: f64,
-    /// Disturbance by blasting and stress relief, at least 0 and at most 1.
-    #[serde(default)]
-    pub d: f64,
-    /// Whether the rock dilates by its friction angle at each stress (associated flow), instead of `dilation_deg`.
-    #[serde(default)]
-    pub associated: bool,
+keys! {
+    /// Generalized Hoek–Brown strength of a rock mass.
+    #[derive(Copy)]
+    pub struct HoekBrown {
+        /// Uniaxial compressive strength of intact rock (Pa).
+        pub sigma_ci: f64 =>
+            Range::from(1e4).to(1e10).of(PASCAL).hint("intact rock has 5e6 to 3e8")
+                .usual([5e5, 5e8], "rock has 5e6 to 3e8 Pa").example(50e6).label("Hoek–Brown σci"),
+        /// Constant of intact rock.
+        pub mi: f64 => Range::from(1.0).to(50.0).of(NUMBER).hint("intact rock has 4 to 35").example(10.0).label("mi"),
+        /// Geological strength index.
+        pub gsi: f64 =>
+            Range::from(1.0).to(100.0).of(NUMBER).hint("rock masses have 10 to 90").example(45.0).label("GSI"),
+        /// Disturbance by blasting and stress relief.
+        #[serde(default)]
+        pub d: f64 =>
+            Range::from(0.0).to(1.0).of(NUMBER).hint("0 for undisturbed rock, 1 for heavy blasting").label("D"),
+        /// Whether the rock dilates by its friction angle at each stress (associated flow), instead of `dilation_deg`.
+        #[serde(default)]
+        pub associated: bool,
+    }
 }
 
 /// Strength of a rock mass between its principal stresses, compression positive:

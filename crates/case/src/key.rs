@@ -1,6 +1,35 @@
-//! Keys: how a place in a case is written in messages, and which known name is nearest to a wrong one.
+//! Keys: how a place in a case is written in messages, the error there, and which known name is nearest
+//! to a wrong one.
 
 use std::fmt;
+
+use thiserror::Error;
+
+/// A value of a case that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{key}: {message}")]
+pub struct Invalid {
+    /// Place in the case, such as `rock.granite.young` or `joint[3].points[1]`.
+    pub key: String,
+    /// The fault, the value, the limit and the remedy.
+    pub message: String,
+}
+
+/// Outcome of a check.
+pub type Check = Result<(), Invalid>;
+
+/// Returns the error at `key`.
+pub fn invalid(key: &Key, message: impl Into<String>) -> Invalid {
+    Invalid { key: key.to_string(), message: message.into() }
+}
+
+/// Fails at `key`.
+///
+/// # Errors
+/// Always.
+pub fn fail(key: &Key, message: impl Into<String>) -> Check {
+    Err(invalid(key, message))
+}
 
 /// A place in a case, written as in messages: `rock.granite.young`, `joint[3].points[1]`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,35 +5,36 @@ use std::fmt;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A picture, or a kind of picture drawn at the end of every stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum PictureKind {
-    /// `model.png`: blocks, joints, supports, loads, water and bolts before the run.
-    Model,
-    /// `deformed.png`: displacement at the end of the run.
-    Deformed,
-    /// `history.png`: monitors, bolts and the motion of the base over the stages.
-    History,
-    /// `energy.png`: energies over the stages.
-    Energy,
-    /// `stage1_displacement.png` and so on: displacement since the start of the stage.
-    Displacement,
-    /// `stage1_joints.png`: joints that are open, slip or lock, and forces of bolts.
-    Joints,
-    /// `stage1_normal_stress.png` and `stage1_shear_stress.png`: stress on joints, averaged over their faces.
-    JointStress,
-    /// `stage1_stress.png`: principal stresses.
-    Stress,
-    /// `stage1_velocity.png`: velocity.
-    Velocity,
-    /// `covers.png`: physical covers of the stars of the mesh.
-    Covers,
-    /// `stage1_displacement_contours.png`: contours of the displacement since the start of the stage.
-    DisplacementContours,
-    /// `stage1_mean_stress_contours.png`: contours of the mean stress in the plane, smoothed within blocks.
-    MeanStressContours,
+use crate::keys::words;
+
+words! {
+    /// A picture, or a kind of picture drawn at the end of every stage.
+    pub enum PictureKind {
+        /// `model.png`: blocks, joints, supports, loads, water and bolts before the run.
+        Model = "model",
+        /// `deformed.png`: displacement at the end of the run.
+        Deformed = "deformed",
+        /// `history.png`: monitors, bolts and the motion of the base over the stages.
+        History = "history",
+        /// `energy.png`: energies over the stages.
+        Energy = "energy",
+        /// `stage1_displacement.png` and so on: displacement since the start of the stage.
+        Displacement = "displacement",
+        /// `stage1_joints.png`: joints that are open, slip or lock, and forces of bolts.
+        Joints = "joints",
+        /// `stage1_normal_stress.png` and `stage1_shear_stress.png`: stress on joints, averaged over their faces.
+        JointStress = "joint_stress",
+        /// `stage1_stress.png`: principal stresses.
+        Stress = "stress",
+        /// `stage1_velocity.png`: velocity.
+        Velocity = "velocity",
+        /// `covers.png`: physical covers of the stars of the mesh.
+        Covers = "covers",
+        /// `stage1_displacement_contours.png`: contours of the displacement since the start of the stage.
+        DisplacementContours = "displacement_contours",
+        /// `stage1_mean_stress_contours.png`: contours of the mean stress in the plane, smoothed within blocks.
+        MeanStressContours = "mean_stress_contours",
+    }
 }
 
 /// Which pictures to draw: `true` for the usual ones, `false` for none, or a list of kinds.

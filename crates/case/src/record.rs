@@ -1,22 +1,23 @@
 //! Records of ground motion: what their rows are, how a file is read, and what is made of it.
 
-use serde::{Deserialize, Serialize};
+use crate::keys::unit::{NUMBER, SECOND};
+use crate::keys::{Range, Rule, keys, words};
 
 /// Standard gravity (m/s²), by which records in g are converted: exact by the 3rd CGPM (1901).
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Quantity in the rows of a ground motion.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum BaseMotionKind {
-    /// Acceleration (m/s²).
-    #[default]
-    Acceleration,
-    /// Velocity (m/s).
-    Velocity,
-    /// Displacement (m), which becomes a velocity.
-    Displacement,
+words! {
+    /// Quantity in the rows of a ground motion.
+    #[derive(Default)]
+    pub enum BaseMotionKind {
+        /// Acceleration (m/s²).
+        #[default]
+        Acceleration = "acceleration",
+        /// Velocity (m/s).
+        Velocity = "velocity",
+        /// Displacement (m), which becomes a velocity.
+        Displacement = "displacement",
+    }
 }
 
 impl BaseMotionKind {
@@ -28,74 +29,58 @@ impl BaseMotionKind {
             Self::Displacement => "m",
         }
     }
+}
 
-    /// Its name, which is also that of the keys that name a file of it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Acceleration => "acceleration",
-            Self::Velocity => "velocity",
-            Self::Displacement => "displacement",
-        }
+words! {
+    /// Part of the wave through a quiet boundary that a record shows.
+    pub enum WaveMotion {
+        /// The wave itself.
+        Incident = "incident",
+        /// The motion of a free surface of the same rock, which is twice the wave.
+        Outcrop = "outcrop",
     }
 }
 
-/// Part of the wave through a quiet boundary that a record shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum WaveMotion {
-    /// The wave itself.
-    Incident,
-    /// The motion of a free surface of the same rock, which is twice the wave.
-    Outcrop,
+words! {
+    /// Correction of a record that does not end at rest: a polynomial is taken from its acceleration.
+    pub enum Baseline {
+        /// Nothing is taken.
+        None = "none",
+        /// A constant, by which the velocity ends at 0.
+        Constant = "constant",
+        /// A straight line, by which velocity and displacement end at 0.
+        Linear = "linear",
+    }
 }
 
-/// Correction of a record that does not end at rest: a polynomial is taken from its acceleration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Baseline {
-    /// Nothing is taken.
-    None,
-    /// A constant, by which the velocity ends at 0.
-    Constant,
-    /// A straight line, by which velocity and displacement end at 0.
-    Linear,
+words! {
+    /// Unit of the times of a record.
+    pub enum TimeUnit {
+        /// Seconds.
+        Second = "s",
+        /// Milliseconds.
+        Millisecond = "ms",
+    }
 }
 
-/// Unit of the times of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum TimeUnit {
-    /// Seconds.
-    #[serde(rename = "s")]
-    Second,
-    /// Milliseconds.
-    #[serde(rename = "ms")]
-    Millisecond,
-}
+/// Columns and channels of a file.
+const COLUMN: Rule = Range::from(1.0).to(1000.0).of(NUMBER).hint("the first one is 1");
 
-/// How the file of a record is read, where it does not say so itself.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct RecordReading {
-    /// Unit of the values, such as `g`, `gal`, `cm/s2`, `mm/s2`, `cm/s` or `mm`; default: the one that the file names,
-    /// else m/s², m/s or m. The file may name no other one.
-    #[serde(default)]
-    pub unit: Option<String>,
-    /// Unit of the times; default: the one that the file names, else seconds.
-    #[serde(default)]
-    pub time_unit: Option<TimeUnit>,
-    /// Time (s) between values, for a file without times.
-    #[serde(default)]
-    pub dt: Option<f64>,
-    /// Columns of time and value, or with `dt` of the value alone, counted from 1; default: the first two.
-    #[serde(default)]
-    pub columns: Option<Vec<usize>>,
-    /// Channel of a file with more than one, counted from 1.
-    #[serde(default)]
-    pub channel: Option<usize>,
+keys! {
+    /// How the file of a record is read, where it does not say so itself.
+    pub default struct RecordReading {
+        /// Unit of the values, such as `g`, `gal`, `cm/s2`, `mm/s2`, `cm/s` or `mm`; default: the one that the file
+        /// names, else m/s², m/s or m. The file may name no other one.
+        pub unit: Option<String>,
+        /// Unit of the times; default: the one that the file names, else seconds.
+        pub time_unit: Option<TimeUnit>,
+        /// Time (s) between values, for a file without times.
+        pub dt: Option<f64> => Range::above(0.0).to(1e6).of(SECOND).hint("0.005 to 0.02 s are usual"),
+        /// Columns of time and value, or with `dt` of the value alone, counted from 1; default: the first two.
+        pub columns: Option<Vec<usize>> => COLUMN,
+        /// Channel of a file with more than one, counted from 1.
+        pub channel: Option<usize> => COLUMN,
+    }
 }
 
 /// Where the rows of a ground motion come from, and what has been made of them: for those who show a case.

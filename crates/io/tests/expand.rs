@@ -246,7 +246,7 @@ fn heads_of_a_bolt_pattern_lie_on_the_face() {
         ("[[11, 3], [8, 9]]", "", "bolt_pattern[0]: has neither of `count` and `distance`, must have exactly 1"),
         ("[[11, 3], [8, 90]]", "count = 2", "bolt 2 through (8, 90) m at 170° meets no face of the rock"),
         ("[[11, 3], [8, 9]]", "count = 4\npretension = -1", "bolt_pattern[0].pretension: is -1 N, must be at least 0"),
-        ("[[11, 3], [8, 9]]", "distance = 1e-9", "bolt_pattern[0].distance: is 6708203933"),
+        ("[[11, 3], [8, 9]]", "distance = 1e-9", "bolt_pattern[0].distance: is 0.000000001 m, which gives 6708203933"),
     ] {
         assert!(error(&case(line, keys)).contains(message), "{}", error(&case(line, keys)));
     }

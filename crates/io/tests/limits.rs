@@ -1,234 +1,82 @@
 //! No numeric key of a case is unchecked, no text makes reading panic, and equal cases have equal fingerprints.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::common::random::Random;
+use crate::key_reference::{Source, find, number_of, sections};
 use crate::support::{CASE, with_geometry};
-use enmm::model::{Case, Simulation};
-use enmm_io::{load_case, parse_case, schema};
+use enmm::model::Simulation;
+use enmm_case::keys::Plain;
+use enmm_io::{CaseError, load_case, parse_case, schema};
 use serde_json::Value;
 
-/// Calls `visit` with the dotted names of every number of a value, list indices left out and names of rocks and laws
-/// replaced.
-fn visit_numbers(value: &mut Value, name: &str, visit: &mut dyn FnMut(&str, &mut Value)) {
-    match value {
-        Value::Array(items) => items.iter_mut().for_each(|item| visit_numbers(item, name, visit)),
-        Value::Object(fields) => {
-            let named = matches!(name, ".rock" | ".joint_law");
-            for (field, item) in fields {
-                visit_numbers(item, &format!("{name}.{}", if named { "NAME" } else { field }), visit);
-            }
-        }
-        Value::Number(_) => visit(name, value),
-        _ => {}
-    }
-}
-
-/// Collects the dotted names of every key of type `number` in a schema.
-fn numbers_of_schema(root: &Value, node: &Value, name: &str, found: &mut BTreeSet<String>) {
-    let reference = node.get("$ref").and_then(Value::as_str).map(|path| root.pointer(&path[1..]).unwrap());
-    for inner in reference.into_iter().chain(node.get("items")) {
-        numbers_of_schema(root, inner, name, found);
-    }
-    if let Some(inner) = node.get("additionalProperties") {
-        numbers_of_schema(root, inner, &format!("{name}.NAME"), found);
-    }
-    for inner in node.get("anyOf").and_then(Value::as_array).into_iter().flatten() {
-        numbers_of_schema(root, inner, name, found);
-    }
-    for (field, inner) in node.get("properties").and_then(Value::as_object).into_iter().flatten() {
-        numbers_of_schema(root, inner, &format!("{name}.{field}"), found);
-    }
-    let kind = node.get("type");
-    let is_number = |kind: &Value| kind == "number";
-    if kind.is_some_and(|kind| is_number(kind) || kind.as_array().is_some_and(|kinds| kinds.iter().any(is_number))) {
-        found.insert(name.to_string());
-    }
-}
-
-/// A law of the kind that the valid case does not have.
-const ROUGH: &str = r#"
-[joint_law.bandis]
-kind = "barton_bandis"
-friction_deg = 28.0
-normal_stiffness = 1e10
-jrc = 10.0
-jcs = 1e8
-closure_max = 1e-4
-"#;
-
-/// A case as users write it, with every numeric key that reading turns into others.
-const SHORT: &str = r#"
-title = "Bolts, cuts and sets in few words"
-domain = { outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 10.0], [0.0, 10.0]], joint_law = "clean", curve_tolerance = 0.1 }
-transform = { scale = 0.001, shift = [1.0, 2.0] }
-mesh = { size = 1.0 }
-section = { azimuth_deg = 90.0 }
-in_situ = { k0 = 0.6, density = 2600.0 }
-
-[[joint_set]]
-angle_deg = 40.0
-angle_sd_deg = 2.0
-spacing = 3.0
-trace_length = 4.0
-persistence = 0.8
-origin = [1.0, 2.0]
-
-[[joint_set]]
-dip_deg = 60.0
-dip_direction_deg = 100.0
-angle_distribution = "fisher"
-fisher_k = 200.0
-spacing = 4.0
-
-[[tessellation]]
-shape = "trigon"
-size = 2.0
-region = [[12.0, 1.0], [18.0, 1.0], [18.0, 4.0]]
-law = "weak"
-
-[[cut]]
-points = [[0.0, 5.0], [20.0, 5.0]]
-
-[[law_region]]
-region = [[0.0, 0.0], [10.0, 0.0], [10.0, 5.0]]
-to = "weak"
-
-[[bolt_pattern]]
-line = [[0.5, 2.0], [0.5, 8.0]]
-distance = 2.0
-length = 5.0
-angle_deg = -10.0
-anchorage = "grouted"
-young = 2e11
-area = 5e-4
-spacing = 2.0
-yield_force = 2e5
-rupture_strain = 0.1
-pretension = 1e4
-free_length = 0.2
-
-[rock.granite]
-density = 2650.0
-young = 5e10
-poisson = 0.25
-
-[joint_law.clean]
-friction_deg = 35.0
-
-[joint_law.weak]
-friction_deg = 20.0
-
-[[stage]]
-name = "settle"
-kind = "static"
-duration_max = 10.0
-
-[[random]]
-key = "joint_law.clean.friction_deg"
-distribution = "normal"
-mean = 35.0
-sd = 3.0
-low = 20.0
-high = 50.0
-
-[[random]]
-key = "joint_law.weak.friction_deg"
-distribution = "triangular"
-least = 15.0
-mode = 20.0
-most = 25.0
-
-[[random_correlation]]
-keys = ["joint_law.clean.friction_deg", "joint_law.weak.friction_deg"]
-value = 0.5
-
-[ensemble]
-limit = 1.0
-interval = 0.1
-"#;
-
-/// How files of records are read: keys of which nothing is left when they have been.
-const READINGS: [&str; 2] = [
-    "[[base_motion]]\nrecord = { dt = 0.01 }\n",
-    "[[quiet]]\nedge = [[0.0, 0.0], [20.0, 0.0]]\nrecord = { dt = 0.01 }\n",
-];
-
-/// Cases whose records are not yet read.
-fn unread_as_json() -> [Value; 2] {
-    READINGS.map(|reading| toml::from_str(&format!("{SHORT}{reading}")).expect("TOML"))
-}
-
-/// The case in few words, as it is written.
-fn short_as_json() -> Value {
-    toml::from_str(SHORT).expect("TOML")
-}
-
-/// The valid case, and the same with the other of keys that exclude each other.
-fn cases_as_json() -> [Value; 2] {
-    let own = CASE.replacen("size = 1.0\n", "size = 1.0\nleast_block = 1e-4\n", 1);
-    let own =
-        own.replacen("snap_tolerance = 1e-6\n", "snap_tolerance = 1e-6\nextend_ends = 0.01\nnear_ends = 0.1\n", 1);
-    let own = own.replacen("damping = 0.05\n", "damping = 0.05\nwater = { level = 1.0 }\n", 1);
-    let drained = own.replacen("water = { level = 1.0 }", "water = { table = [[0.0, 1.0], [10.0, 0.5]] }", 1);
-    let other = drained.replacen("level = 1.5", "table = [[0.0, 2.0], [10.0, 1.5]]", 1) + ROUGH;
-    [own, other].map(|text| serde_json::to_value(parse_case(&text, "slope.toml", Path::new("")).unwrap().case).unwrap())
-}
+/// Names of the ends of a range in a schema, closed and open.
+const ENDS: [[&str; 2]; 2] = [["minimum", "exclusiveMinimum"], ["maximum", "exclusiveMaximum"]];
 
 #[test]
 fn every_number_of_the_schema_has_a_limit_at_both_ends() {
-    let mut names = BTreeSet::new();
-    for mut json in cases_as_json() {
-        visit_numbers(&mut json, "", &mut |name, _| names.extend([name.to_string()]));
+    fn check(name: &str, node: &Value) {
+        let kinds = node["type"].to_string();
+        if kinds.contains("number") || kinds.contains("integer") {
+            let has = |ends: [&str; 2]| ends.iter().any(|end| node[end].is_number());
+            assert!(ENDS.into_iter().all(has), "{name} has no limit: give its field a rule");
+        }
+        match node {
+            Value::Object(fields) => fields.iter().for_each(|(key, inner)| check(&format!("{name}.{key}"), inner)),
+            Value::Array(items) => items.iter().for_each(|inner| check(name, inner)),
+            _ => {}
+        }
     }
-    for mut json in [vec![short_as_json()], unread_as_json().to_vec()].concat() {
-        visit_numbers(&mut json, "", &mut |name, _| names.extend([name.to_string()]));
-    }
-    let mut expected = BTreeSet::new();
-    let schema = schema();
-    numbers_of_schema(&schema, &schema, "", &mut expected);
-    let absent: Vec<_> = expected.difference(&names).collect();
-    assert!(absent.is_empty(), "the case of this test must hold every numeric key, {absent:?} are absent");
-
-    let mut plain = BTreeSet::new();
-    for mut original in cases_as_json() {
-        refuses_extremes(&original, &|_| true);
-        visit_numbers(&mut original, "", &mut |name, _| plain.extend([name.to_string()]));
-    }
-    // Other keys of the short case are seen first by what lays bolts and cuts in the rock.
-    refuses_extremes(&short_as_json(), &|name| !plain.contains(name));
-    unread_as_json().iter().for_each(|json| refuses_extremes(json, &|name| name.ends_with("record.dt")));
+    check("case", &schema());
 }
 
-/// Reads a case as files are read: turns short words into plain data and checks them. Keys are those that were written.
-fn read(mut case: Case) -> Result<(), String> {
-    let found = case.expand().map_err(|error| error.key)?;
-    let written = |key: String| {
-        let origin = found.origins.iter().find(|(made, _)| key.starts_with(made.as_str()));
-        origin.map_or(key.clone(), |(made, origin)| key.replacen(made.as_str(), origin, 1))
-    };
-    case.validate().map_err(|error| written(error.key))
-}
-
-/// Every number of a case, of those that are `wanted` by name, is refused when it is far out of range.
-fn refuses_extremes(original: &Value, wanted: &dyn Fn(&str) -> bool) {
-    let mut count = 0;
-    visit_numbers(&mut original.clone(), "", &mut |_, _| count += 1);
-    for (nth, extreme) in (0..count).flat_map(|nth| [(nth, 1e30), (nth, -1e30)]) {
-        let (mut json, mut at, mut changed) = (original.clone(), 0, None);
-        visit_numbers(&mut json, "", &mut |name, value| {
-            if at == nth && value.is_f64() {
-                *value = Value::from(extreme);
-                changed = Some(name.to_string());
+/// Each number of the schema is refused just outside its range, and not for its range just inside, by a case of the key
+/// reference.
+#[test]
+fn ranges_of_the_schema_are_those_that_the_program_checks() {
+    let sources = Source::all();
+    let mut checked = 0;
+    for section in sections() {
+        for (key, property, _) in &section.keys {
+            let (number, path) = (number_of(property), section.path());
+            let is_whole = number["type"].to_string().contains("integer");
+            let told = |source: &Source, value: f64| refusal(source, &path, key, value);
+            for (ends, words) in ENDS.into_iter().zip([["at least", "greater than"], ["at most", "less than"]]) {
+                let [closed, open] = ends.map(|end| number[end].as_f64());
+                let Some(limit) = closed.or(open).filter(|limit| !is_whole || limit.abs() < 1e18) else { continue };
+                let beyond = |up: bool| match (is_whole, up) {
+                    (true, _) => limit + if up { 1.0 } else { -1.0 },
+                    (false, true) => limit.next_up(),
+                    (false, false) => limit.next_down(),
+                };
+                let up = ends == ENDS[1];
+                let [inside, outside] = if closed.is_some() { [limit, beyond(up)] } else { [beyond(!up), limit] };
+                let place = format!("{}.{key} = {outside:e}", path.join("."));
+                let refusing = sources.iter().find(|source| told(source, outside).is_some());
+                let source = refusing.unwrap_or_else(|| panic!("{place} is not refused"));
+                let message = told(source, inside).unwrap_or_default();
+                let is_refused = words.iter().any(|words| message.contains(&format!("{words} {} ", Plain(limit))));
+                assert!(!is_refused, "{place}, inside: {message}");
+                checked += 1;
             }
-            at += 1;
-        });
-        let Some(name) = changed.filter(|name| wanted(name)) else { continue };
-        let case: Case = serde_json::from_value(json).unwrap();
-        let key = read(case).err().unwrap_or_else(|| panic!("{name} may be {extreme:e}"));
-        let last = name.rsplit('.').next().unwrap();
-        assert!(key.contains(last), "{name} = {extreme:e} is reported at {key}");
+        }
+    }
+    assert!(checked > 250, "{checked}");
+}
+
+/// Why the program refuses a case with a number in the place of the first one of a key, if it does so at that key.
+fn refusal(source: &Source, path: &[&str], key: &str, value: f64) -> Option<String> {
+    let mut table = source.table.clone();
+    let mut number = find(&mut table, path, key)?;
+    while number.is_array() {
+        number = number.get_mut(0)?;
+    }
+    let is_whole = number.is_integer() && value.fract() == 0.0 && value.abs() < 1e18;
+    *number = if is_whole { toml::Value::Integer(value as i64) } else { toml::Value::Float(value) };
+    let text = toml::to_string(&table).expect("TOML");
+    match parse_case(&text, "case.toml", source.path.parent().expect("a folder")) {
+        Err(CaseError::Value { key: at, message, .. }) if at.contains(key) => Some(message),
+        _ => None,
     }
 }
 
@@ -363,8 +211,9 @@ const DXF: &str = "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nclean\n10\n0.0\n20\n1.0\
 
 #[test]
 fn mutated_case_never_panics() {
-    for seed in 0..400 {
-        let text = apply(CASE, &edits(&mut Random::new(seed)));
+    let sources = Source::all();
+    for (seed, source) in (0..400).zip(sources.iter().cycle()) {
+        let text = apply(&source.text, &edits(&mut Random::new(seed)));
         if let Err(error) = parse_case(&text, "slope.toml", Path::new("/nowhere")) {
             assert!(is_one_line(&error.to_string()), "seed {seed}: {error}");
         }

@@ -249,7 +249,7 @@ fn more_columns_than_two_are_chosen_by_the_head_or_warned_of() {
         ("[1, 4]", "record.columns: has 4, must be at least 1 and at most 3"),
         ("[2, 2]", "must be two different columns"),
         ("[2]", "has one column, and no `dt`"),
-        ("[0, 2]", "record.columns: is 0, must be at least 1 and at most 1000"),
+        ("[0, 2]", "record.columns[0]: is 0, must be at least 1 and at most 1000"),
     ] {
         let refused = refused(base("r.csv", three(""), &format!("record = {{ columns = {columns} }}")));
         assert!(refused.contains(told), "{refused}");

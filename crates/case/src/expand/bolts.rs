@@ -1,13 +1,11 @@
 //! Bolt patterns become bolts with their heads on the face.
 
 use super::Expanded;
-use crate::key::Key;
+use crate::bolt::BOLTS_MAX;
+use crate::key::{Check, Key, fail, invalid};
 use crate::validate::bolts::validate_bolts;
-use crate::validate::checks::{COORDINATE_MAX, Check, Range, fail, invalid, number, optional, segment, unique, whole};
+use crate::validate::checks::{segment, unique};
 use crate::{Bolt, BoltPattern, Case, Invalid};
-
-/// Most bolts of a pattern.
-const BOLTS_MAX: u64 = 10_000;
 
 /// Expands all bolt patterns, and their names in the stages that install them.
 ///
@@ -48,14 +46,8 @@ pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
 }
 
 fn check(key: &Key, pattern: &BoltPattern) -> Check {
+    pattern.check(key)?;
     segment(&key.field("line"), &pattern.line)?;
-    let length = Range::above(0.0).to(COORDINATE_MAX);
-    number(key, "length", pattern.length, length, "m", "from the head to the far end")?;
-    number(key, "angle_deg", pattern.angle_deg, Range::within(360.0), "degrees", "from the head into the rock")?;
-    optional(key, "distance", pattern.distance, length, "m", "between bolts along the line")?;
-    if let Some(count) = pattern.count {
-        whole(key, "count", u64::from(count), (1, BOLTS_MAX), "the bolts in the section")?;
-    }
     // The bar alone, wherever it lies.
     let bar = Bolt { points: pattern.line, ..bar(pattern) };
     validate_bolts(&Key::root(), &[bar]).map_err(|mut invalid| {
@@ -73,7 +65,11 @@ fn stations(key: &Key, pattern: &BoltPattern) -> Result<Vec<[f64; 2]>, Invalid> 
         (None, Some(distance)) => {
             let step = distance / libm::hypot(b[0] - a[0], b[1] - a[1]);
             let count = (1.0 / step * (1.0 + 1e-12)).floor() + 1.0;
-            whole(key, "distance", count as u64, (1, BOLTS_MAX), "that many bolts would follow; raise it")?;
+            if count > f64::from(BOLTS_MAX) {
+                let message =
+                    format!("is {distance} m, which gives {count} bolts, must give at most {BOLTS_MAX}; raise it");
+                return Err(invalid(&key.field("distance"), message));
+            }
             (0..count as u32).map(|k| f64::from(k) * step).collect()
         }
         (count, _) => {

@@ -1,8 +1,8 @@
 //! Construction joints become joints with a law that does not break.
 
 use super::Expanded;
-use crate::key::Key;
-use crate::validate::checks::{Check, fail, points};
+use crate::key::{Check, Key, fail};
+use crate::validate::checks::points;
 use crate::{Case, JointLaw, JointTrace};
 
 /// Name of the law of construction joints.
@@ -19,6 +19,7 @@ const FRICTION_DEG: f64 = 35.0;
 pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
     for (k, cut) in std::mem::take(&mut case.cuts).into_iter().enumerate() {
         let key = Key::root().field("cut").index(k);
+        cut.check(&key)?;
         points(&key.field("points"), &cut.points, 2, "a cut")?;
         if k == 0 {
             law_of_others(case)?;

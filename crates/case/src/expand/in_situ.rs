@@ -1,7 +1,6 @@
 //! In-situ stress by K0: the vertical stress is the weight of the rock above, the horizontal one K0 times it.
 
-use crate::key::Key;
-use crate::validate::checks::{COORDINATE_MAX, Check, Range, fail, number, optional};
+use crate::key::{Check, Key, fail};
 use crate::{Case, InSitu};
 
 /// Expands the in-situ stress of a case.
@@ -11,6 +10,7 @@ use crate::{Case, InSitu};
 pub fn expand(case: &mut Case) -> Check {
     let key = Key::root().field("in_situ");
     let Some(mut stress) = case.in_situ.take() else { return Ok(()) };
+    stress.check(&key)?;
     match stress.k0 {
         Some(k0) => by_weight(&key, case, &mut stress, k0)?,
         None => check_plain(&key, &stress)?,
@@ -36,7 +36,6 @@ fn check_plain(key: &Key, stress: &InSitu) -> Check {
 }
 
 fn by_weight(key: &Key, case: &Case, stress: &mut InSitu, k0: f64) -> Check {
-    number(key, "k0", k0, Range::from(0.0).to(20.0), "", "horizontal over vertical stress, 0.3 to 3 is usual")?;
     let given = [
         ("sxx", stress.sxx.is_some()),
         ("syy", stress.syy.is_some()),
@@ -46,9 +45,8 @@ fn by_weight(key: &Key, case: &Case, stress: &mut InSitu, k0: f64) -> Check {
     if let Some((name, _)) = given.iter().find(|(_, there)| *there) {
         return fail(&key.field(name), "follows from `k0` and the weight of the rock; remove it, or remove `k0`");
     }
-    optional(key, "density", stress.density, Range::from(1e-3).to(1e6), "kg/m³", "rock has 1500 to 3500")?;
-    optional(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "the ground surface")?;
     let gravity = &case.gravity;
+    gravity.check(&Key::root().field("gravity"))?;
     if gravity.x != 0.0 || gravity.y >= 0.0 {
         let message = format!(
             "needs gravity that acts straight down, but gravity is ({}, {}) m/s²; give `sxx` and `syy` instead",

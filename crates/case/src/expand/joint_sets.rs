@@ -1,9 +1,8 @@
 //! Joint sets: dips and dip directions become angles in the section, persistence the gap.
 
 use super::Expanded;
-use crate::key::Key;
+use crate::key::{Check, Key, fail};
 use crate::orientation::trace_angle;
-use crate::validate::checks::{Check, Range, fail, number, optional};
 use crate::{Case, JointSet, Section, Side};
 
 /// Share of the normal of joints that must lie in the section for them to have a trace in it.
@@ -16,11 +15,11 @@ const TRACE_SHARE: f64 = 0.05;
 pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
     let section = case.section;
     if let Some(section) = section {
-        let key = Key::root().field("section");
-        number(&key, "azimuth_deg", section.azimuth_deg, Range::within(360.0), "degrees", "clockwise from north")?;
+        section.check(&Key::root().field("section"))?;
     }
     for (k, set) in case.joint_sets.iter_mut().enumerate() {
         let key = Key::root().field("joint_set").index(k);
+        set.check(&key)?;
         if set.angle_sd_deg.is_some() {
             told.origins.insert(format!("{key}.dip_sd_deg"), format!("{key}.angle_sd_deg"));
         }
@@ -63,13 +62,9 @@ fn angle(key: &Key, set: &mut JointSet, section: Option<Section>) -> Check {
             return fail(&key.field("dip_direction_deg"), message);
         }
         (Some(side), None) => {
-            check_dip(key, dip)?;
             set.angle_deg = Some(if side == Side::Left { dip } else { -dip });
         }
         (None, Some(direction)) => {
-            check_dip(key, dip)?;
-            let range = Range::within(360.0);
-            number(key, "dip_direction_deg", direction, range, "degrees", "clockwise from north")?;
             let Some(section) = section else {
                 let message = format!(
                     "is {direction}, but the case does not say where its section lies; add `[section]` with \
@@ -82,11 +77,6 @@ fn angle(key: &Key, set: &mut JointSet, section: Option<Section>) -> Check {
     }
     (set.dip_deg, set.dips, set.dip_direction_deg) = (None, None, None);
     Ok(())
-}
-
-fn check_dip(key: &Key, dip: f64) -> Check {
-    let hint = "a dip is measured down from the horizontal; `dips` or `dip_direction_deg` gives the side";
-    number(key, "dip_deg", dip, Range::from(0.0).to(90.0), "degrees", hint)
 }
 
 /// A side or an azimuth without a dip.
@@ -120,8 +110,6 @@ fn apparent(key: &Key, set: &mut JointSet, dip_deg: f64, off_deg: f64) -> Check 
 /// Persistence gives the gap or the trace length.
 fn persistence(key: &Key, set: &mut JointSet) -> Check {
     let Some(share) = set.persistence else { return Ok(()) };
-    let hint = "the share of each line that is joint";
-    optional(key, "persistence", set.persistence, Range::above(0.0).to(1.0), "", hint)?;
     match (set.trace_length, set.gap) {
         (Some(length), gap) if gap != 0.0 => {
             let is = length / (length + gap);

@@ -14,10 +14,8 @@ pub use cuts::LAW as CUT_LAW;
 
 use std::collections::BTreeMap;
 
-use super::key::Key;
+use super::key::{Check, Invalid, Key, fail};
 use super::plausible;
-use super::validate::Invalid;
-use super::validate::checks::{Check, fail};
 use super::{Case, InSitu, JointSet, StageKind};
 
 /// Notes of an expansion, and where its results come from.

@@ -1,9 +1,8 @@
 //! Records of ground motion: accelerations and displacements of waves become velocities, displacements of the base too,
 //! baselines are corrected, and records of outcrops halved (theory §14).
 
-use crate::key::Key;
+use crate::key::{Check, Key, fail};
 use crate::record::{Baseline, RecordOrigin, WaveMotion};
-use crate::validate::checks::{Check, fail};
 use crate::validate::ground::{at_least_two, missing_table};
 use crate::{BaseMotion, BaseMotionKind, Case, Quiet, TimeTable};
 

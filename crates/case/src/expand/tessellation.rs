@@ -2,8 +2,8 @@
 
 use super::Expanded;
 use super::cells::{polygons, triangles};
-use crate::key::Key;
-use crate::validate::checks::{COORDINATE_MAX, Check, Range, fail, number, region};
+use crate::key::{Check, Key, fail};
+use crate::validate::checks::region;
 use crate::{Case, CellShape, JointTrace, Tessellation};
 
 /// Most cells of a tessellation.
@@ -50,14 +50,8 @@ fn warning(shape: CellShape) -> &'static str {
 
 fn check(key: &Key, case: &Case, tessellation: &Tessellation) -> Check {
     let Tessellation { size, region: ring, .. } = tessellation;
-    number(
-        key,
-        "size",
-        *size,
-        Range::above(0.0).to(COORDINATE_MAX),
-        "m",
-        "the mean distance between centres of cells",
-    )?;
+    tessellation.check(key)?;
+    case.mesh.check(&Key::root().field("mesh"))?;
     region(&key.field("region"), ring)?;
     let [low, high] = bounds(ring);
     let cells = (high[0] - low[0]) * (high[1] - low[1]) / (AREA * size * size);

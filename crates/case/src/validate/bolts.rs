@@ -1,7 +1,7 @@
 //! Checks of rock bolts: values, what fits the anchorage, and stages that install them.
 
-use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional, segment, unique};
-use crate::key::Key;
+use super::checks::{Names, each, segment, unique};
+use crate::key::{Check, Key, fail};
 use crate::{Anchorage, Bolt, Case, Support};
 
 /// Checks the bolts of a case.
@@ -9,28 +9,18 @@ use crate::{Anchorage, Bolt, Case, Support};
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_bolts(key: &Key, bolts: &[Bolt]) -> Check {
-    for (i, bolt) in bolts.iter().enumerate() {
-        validate_bolt(&key.index(i), bolt)?;
-    }
+    each(key, bolts, validate_bolt)?;
     unique(key, "bolt", bolts.iter().map(|bolt| bolt.name.as_deref()))
 }
 
 fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
+    bolt.check(key)?;
     if bolt.has_no_points() {
         let message = "is missing (head and far end); add `points = [[1.0, 1.0], [5.0, 0.0]]`, or name the bolt in a \
                        layer of the drawing";
         return fail(&key.field("points"), message);
     }
     segment(&key.field("points"), &bolt.points)?;
-    let force = Range::above(0.0).to(1e12);
-    let length = Range::above(0.0).to(COORDINATE_MAX);
-    number(key, "young", bolt.young, Range::above(0.0).to(1e15), "Pa", "")?;
-    number(key, "area", bolt.area, Range::above(0.0).to(1e3), "m²", "")?;
-    number(key, "spacing", bolt.spacing, length, "m", "1 for one bar per metre")?;
-    optional(key, "yield_force", bolt.yield_force, force, "N", "leave it out for a bar that never yields")?;
-    optional(key, "rupture_strain", bolt.rupture_strain, Range::above(0.0).to(1e6), "", "0.05 to 0.2 is usual")?;
-    number(key, "pretension", bolt.pretension, Range::from(0.0).to(1e12), "N", "0 for a bar without tension")?;
-    optional(key, "free_length", bolt.free_length, length, "m", "leave it out for a tenth of the mesh size")?;
     if bolt.free_length.is_some() && bolt.anchorage == Anchorage::Ends {
         let message = "a bar held at its ends is free between them; remove it, or set `anchorage = \"grouted\"`";
         return fail(&key.field("free_length"), message);

@@ -1,184 +1,50 @@
-//! The family of checks that validation is written with. Every message says what, the value, the limit and the remedy.
+//! The family of checks that validation is written with, beside those of single numbers ([`crate::keys`]). Every
+//! message says what, the value, the limit and the remedy.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::Invalid;
-use crate::key::{Key, list, nearest};
-use crate::plausible;
+use crate::key::{Check, Invalid, Key, fail, invalid, list, nearest};
+use crate::keys::Plain;
 use crate::{Case, StageKind, TimeTable};
 
-/// Outcome of a check.
-pub type Check = Result<(), Invalid>;
-
-/// Largest coordinate (m): beyond it a double resolves less than a tenth of a micrometre.
-pub const COORDINATE_MAX: f64 = 1e9;
-/// Limits of a count of sweeps.
-pub const ONE_TO_THOUSAND: (u64, u64) = (1, 1000);
-
-/// Limits of the values of joint laws.
-pub struct Law;
-
-impl Law {
-    /// Friction and dilation angles (degrees).
-    pub const ANGLE: Range = Range::from(0.0).below(90.0);
-    /// Cohesion and tensile strength (Pa).
-    pub const STRENGTH: Range = Range::from(0.0).to(Self::STRENGTH_MAX);
-    /// Largest cohesion and tensile strength (Pa).
-    pub const STRENGTH_MAX: f64 = 1e12;
-    /// Stiffness (Pa/m).
-    pub const STIFFNESS: Range = Range::above(0.0).to(1e18);
-}
-
-/// An interval with open or closed ends.
-#[derive(Debug, Clone, Copy)]
-pub struct Range {
-    low: f64,
-    low_open: bool,
-    high: f64,
-    high_open: bool,
-}
-
-impl Range {
-    /// Returns the values greater than `low`.
-    pub const fn above(low: f64) -> Self {
-        Self { low, low_open: true, high: f64::MAX, high_open: false }
-    }
-
-    /// Returns the values that are at least `low`.
-    pub const fn from(low: f64) -> Self {
-        Self { low, low_open: false, high: f64::MAX, high_open: false }
-    }
-
-    /// Returns the values whose magnitude is at most `size`.
-    pub const fn within(size: f64) -> Self {
-        Self { low: -size, low_open: false, high: size, high_open: false }
-    }
-
-    /// Adds an upper end that belongs to the range.
-    pub const fn to(self, high: f64) -> Self {
-        Self { high, high_open: false, ..self }
-    }
-
-    /// Adds an upper end that does not belong to the range.
-    pub const fn below(self, high: f64) -> Self {
-        Self { high, high_open: true, ..self }
-    }
-
-    fn holds(&self, value: f64) -> bool {
-        let above = if self.low_open { value > self.low } else { value >= self.low };
-        let below = if self.high_open { value < self.high } else { value <= self.high };
-        above && below
-    }
-}
-
-impl fmt::Display for Range {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let low = if self.low_open { "greater than" } else { "at least" };
-        let high = if self.high_open { "less than" } else { "at most" };
-        write!(f, "{low} {} and {high} {}", Plain(self.low), Plain(self.high))
-    }
-}
-
-/// A number in the shorter of the two notations.
-struct Plain(f64);
-
-impl fmt::Display for Plain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size == 0.0 || !size.is_finite() || (1e-4..1e6).contains(&size) {
-            write!(f, "{}", self.0)
-        } else {
-            write!(f, "{:e}", self.0)
-        }
-    }
-}
-
-/// Returns the error at `key`.
-pub fn invalid(key: &Key, message: impl Into<String>) -> Invalid {
-    Invalid { key: key.to_string(), message: message.into() }
-}
-
-/// Fails at `key`.
+/// Checks each entry of a list.
 ///
 /// # Errors
-/// Always.
-pub fn fail(key: &Key, message: impl Into<String>) -> Check {
-    Err(invalid(key, message))
+/// The first entry that cannot be used.
+pub fn each<T>(key: &Key, list: &[T], check: impl Fn(&Key, &T) -> Check) -> Check {
+    list.iter().enumerate().try_for_each(|(i, entry)| check(&key.index(i), entry))
 }
 
-/// Checks the number `name` of the table `key` (or the element `key` itself, if `name` is empty). Without a hint it
-/// is that of the table of usual ranges.
+/// Checks the number of points of a list.
 ///
 /// # Errors
-/// The value is not finite or outside the range.
-pub fn number(key: &Key, name: &str, value: f64, range: Range, unit: &str, hint: &str) -> Check {
-    if value.is_finite() && range.holds(value) {
-        return Ok(());
-    }
-    let key = if name.is_empty() { key.clone() } else { key.field(name) };
-    let space = if unit.is_empty() { "" } else { " " };
-    let limit = if value.is_finite() { range.to_string() } else { format!("a finite number, {range}") };
-    let hint = if hint.is_empty() { plausible::usual(key.as_str()).unwrap_or_default() } else { hint };
-    fail(&key, format!("is {}{space}{unit}, must be {limit}; {hint}", Plain(value)))
-}
-
-/// Checks a number that may be left out, see [`number`].
-///
-/// # Errors
-/// The value is there and not finite or outside the range.
-pub fn optional(key: &Key, name: &str, value: Option<f64>, range: Range, unit: &str, hint: &str) -> Check {
-    value.map_or(Ok(()), |value| number(key, name, value, range, unit, hint))
-}
-
-/// Checks a whole number.
-///
-/// # Errors
-/// The value is outside the limits, which belong to the range.
-pub fn whole(key: &Key, name: &str, value: u64, (low, high): (u64, u64), hint: &str) -> Check {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    fail(&key.field(name), format!("is {value}, must be at least {low} and at most {high}; {hint}"))
-}
-
-/// Checks the coordinates of a point.
-///
-/// # Errors
-/// A coordinate is not finite or beyond [`COORDINATE_MAX`].
-pub fn point(key: &Key, [x, y]: &[f64; 2]) -> Check {
-    for (name, value) in [("x", *x), ("y", *y)] {
-        if value.is_finite() && value.abs() <= COORDINATE_MAX {
-            continue;
-        }
-        let message = format!(
-            "{name} is {} m, must be a finite number of at most {} m in magnitude; correct it or move the origin",
-            Plain(value),
-            Plain(COORDINATE_MAX)
-        );
-        return fail(key, message);
-    }
-    Ok(())
-}
-
-/// Checks the number of points of a list and their coordinates.
-///
-/// # Errors
-/// There are fewer points than `least`, or one is unusable.
+/// There are fewer points than `least`.
 pub fn points(key: &Key, list: &[[f64; 2]], least: usize, what: &str) -> Check {
     if list.len() < least {
         let message = format!("has {} points, {what} needs at least {least}; add points or remove it", list.len());
         return fail(key, message);
     }
-    // The key of a point is written for the first that is unusable.
-    let unusable = list.iter().position(|place| point(key, place).is_err());
-    unusable.map_or(Ok(()), |i| point(&key.index(i), &list[i]))
+    Ok(())
+}
+
+/// Checks that exactly one of some places is given, and returns its name.
+///
+/// # Errors
+/// None is given, or several are.
+pub fn only<'a>(key: &Key, places: &[(&'a str, bool)]) -> Result<&'a str, Invalid> {
+    let given: Vec<&str> = places.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect();
+    if let [only] = given[..] {
+        return Ok(only);
+    }
+    let (count, given, all) = (given.len(), list(given), list(places.iter().map(|(name, _)| *name)));
+    Err(invalid(key, format!("has {count} places ({given}), must have exactly 1 of {all}; keep or add one")))
 }
 
 /// Checks a loop, whose crossings are the builder's to judge.
 ///
 /// # Errors
-/// There are fewer than three points, one is unusable, or all lie on one line.
+/// There are fewer than three points, or all lie on one line.
 pub fn polygon(key: &Key, ring: &[[f64; 2]]) -> Check {
     points(key, ring, 3, "a loop")?;
     let [x0, y0] = ring[0];
@@ -198,7 +64,7 @@ pub fn polygon(key: &Key, ring: &[[f64; 2]]) -> Check {
 /// Checks a polygon that selects parts of the rock.
 ///
 /// # Errors
-/// There are fewer than three points, one is unusable, or the polygon has no area.
+/// There are fewer than three points, or the polygon has no area.
 pub fn region(key: &Key, ring: &[[f64; 2]]) -> Check {
     polygon(key, ring)?;
     let [x0, y0] = ring[0];
@@ -217,27 +83,31 @@ pub fn region(key: &Key, ring: &[[f64; 2]]) -> Check {
 /// Checks a segment.
 ///
 /// # Errors
-/// An end is unusable, or both ends are the same point.
+/// Both ends are the same point.
 pub fn segment(key: &Key, edge: &[[f64; 2]; 2]) -> Check {
-    points(key, edge, 2, "a segment")?;
     if edge[0] == edge[1] {
         return fail(key, format!("both ends are {:?}, a segment needs two different points; move one", edge[0]));
     }
     Ok(())
 }
 
+/// Times of rows (s).
+const TIMES: std::ops::RangeInclusive<f64> = 0.0..=1e9;
+
 /// Checks a table of times (s) and factors.
 ///
 /// # Errors
-/// There is no row, a value is unusable, or the times do not increase.
+/// There is no row, a time is negative, or the times do not increase.
 pub fn table(key: &Key, rows: &TimeTable) -> Check {
     if rows.is_empty() {
         return fail(key, "has no rows, at least 1 is needed; add `[time, factor]` or leave the table out");
     }
-    for (i, &[time, factor]) in rows.iter().enumerate() {
+    for (i, &[time, _]) in rows.iter().enumerate() {
         let key = key.index(i);
-        number(&key, "", time, Range::from(0.0).to(1e9), "s", "the first value of a row is a time")?;
-        number(&key, "", factor, Range::within(1e12), "", "the second value of a row is a factor")?;
+        if !TIMES.contains(&time) {
+            let message = format!("time is {} s, must be at least 0 and at most 1e9; correct it", Plain(time));
+            return fail(&key, message);
+        }
         if i > 0 && time <= rows[i - 1][0] {
             let message = format!(
                 "time is {} s, must be greater than {} s of the row before; sort the rows by time",

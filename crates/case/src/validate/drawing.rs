@@ -1,7 +1,7 @@
 //! Checks of the keys that say how a drawing becomes a section.
 
-use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional};
-use crate::key::{Key, list};
+use super::checks::Names;
+use crate::key::{Check, Key, fail, list};
 use crate::{Case, Layer, LayerUse};
 
 impl Case {
@@ -11,9 +11,7 @@ impl Case {
     /// The first value that cannot be used.
     pub fn validate_drawing(&self) -> Check {
         let root = Key::root();
-        let domain = root.field("domain");
-        let tolerance = Range::from(1e-6).to(1e3);
-        optional(&domain, "curve_tolerance", self.domain.curve_tolerance, tolerance, "m", "0.02 mesh sizes is usual")?;
+        self.domain.check(&root.field("domain"))?;
         let mut seen: Vec<String> = Vec::new();
         for (name, layer) in &self.layers {
             let key = root.field("layers").field(name);
@@ -23,14 +21,7 @@ impl Case {
             seen.push(name.to_lowercase());
             self.validate_layer(&key, layer)?;
         }
-        let Some(transform) = &self.transform else { return Ok(()) };
-        let key = root.field("transform");
-        let hint = "metres in a unit of the drawing: 0.001 for mm";
-        optional(&key, "scale", transform.scale, Range::from(1e-6).to(1e6), "", hint)?;
-        let shift = Range::within(COORDINATE_MAX);
-        transform.shift.iter().enumerate().try_for_each(|(axis, &value)| {
-            number(&key.field("shift").index(axis), "", value, shift, "m", "what moves the drawing to its place")
-        })
+        self.transform.as_ref().map_or(Ok(()), |transform| transform.check(&root.field("transform")))
     }
 
     fn validate_layer(&self, key: &Key, layer: &Layer) -> Check {

@@ -1,7 +1,7 @@
 //! Checks of base motions, quiet boundaries and free-field columns.
 
-use super::checks::{Check, Names, Range, fail, number, optional, segment, table};
-use crate::key::Key;
+use super::checks::{Names, each, segment, table};
+use crate::key::{Check, Key, fail};
 use crate::limits::{ACCELERATION_MAX, VELOCITY_MAX};
 use crate::record::RecordReading;
 use crate::{BaseMotion, BaseMotionKind, Case, FreeField, Quiet, TimeTable};
@@ -17,11 +17,11 @@ const VERTICAL: f64 = 1e-9;
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_base_motions(key: &Key, case: &Case) -> Check {
-    let of = |(i, base): (usize, &BaseMotion)| validate_base_motion(&key.index(i), base, case);
-    case.base_motions.iter().enumerate().try_for_each(of)
+    each(key, &case.base_motions, |key, base| validate_base_motion(key, base, case))
 }
 
 fn validate_base_motion(key: &Key, base: &BaseMotion, case: &Case) -> Check {
+    base.check(key)?;
     validate_reading(key, base.record.as_ref())?;
     let Some(rows) = &base.table else { return missing_table(key, base.file.is_some()) };
     belongs_to_a_file(key, base.record.is_some())?;
@@ -42,10 +42,11 @@ fn validate_base_motion(key: &Key, base: &BaseMotion, case: &Case) -> Check {
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_quiets(key: &Key, case: &Case) -> Check {
-    case.quiets.iter().enumerate().try_for_each(|(i, quiet)| validate_quiet(&key.index(i), quiet, case))
+    each(key, &case.quiets, |key, quiet| validate_quiet(key, quiet, case))
 }
 
 fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
+    quiet.check(key)?;
     segment(&key.field("edge"), &quiet.edge)?;
     validate_reading(key, quiet.record.as_ref())?;
     let Some(wave) = quiet.wave else {
@@ -61,12 +62,7 @@ fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
     };
     let Some(rows) = &quiet.table else { return missing_table(key, quiet.file.is_some()) };
     belongs_to_a_file(key, quiet.record.is_some())?;
-    for (i, value) in wave.into_iter().enumerate() {
-        let hint = "the particle velocity of the incident wave";
-        number(&key.field("wave").index(i), "", value, Range::within(VELOCITY_MAX), "m/s", hint)?;
-    }
     rows_within(key, rows, quiet.scale * libm::hypot(wave[0], wave[1]), VELOCITY_MAX, "m/s")?;
-    number(key, "scale", quiet.scale, Range::within(1e12), "", "1 is the default")?;
     stage_is_dynamic(key, quiet.stage.as_deref(), case)
 }
 
@@ -75,45 +71,24 @@ fn validate_quiet(key: &Key, quiet: &Quiet, case: &Case) -> Check {
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_free_fields(key: &Key, sides: &[FreeField]) -> Check {
-    for (i, side) in sides.iter().enumerate() {
-        let key = key.index(i).field("edge");
+    each(key, sides, |key, side| {
+        side.check(key)?;
+        let key = key.field("edge");
         segment(&key, &side.edge)?;
         let [a, b] = side.edge;
-        if (b[0] - a[0]).abs() > VERTICAL * (b[1] - a[1]).abs() {
-            let message = format!(
-                "runs from ({}, {}) to ({}, {}), must be vertical: its column stands upright; give a side with one x",
-                a[0], a[1], b[0], b[1]
-            );
-            return fail(&key, message);
+        if (b[0] - a[0]).abs() <= VERTICAL * (b[1] - a[1]).abs() {
+            return Ok(());
         }
-    }
-    Ok(())
-}
-
-/// Most columns and channels of a file.
-const COLUMNS_MAX: usize = 1000;
-
-impl RecordReading {
-    /// Checks what the keys at `key` say.
-    ///
-    /// # Errors
-    /// The first value that cannot be used.
-    pub fn validate(&self, key: &Key) -> Check {
-        optional(key, "dt", self.dt, Range::above(0.0).to(1e6), "s", "0.005 to 0.02 s are usual")?;
-        let columns = self.columns.iter().flatten().map(|column| ("columns", column));
-        let numbers = columns.chain(self.channel.iter().map(|channel| ("channel", channel)));
-        for (name, number) in numbers {
-            if !(1..=COLUMNS_MAX).contains(number) {
-                let message = format!("is {number}, must be at least 1 and at most {COLUMNS_MAX}; the first one is 1");
-                return fail(&key.field(name), message);
-            }
-        }
-        Ok(())
-    }
+        let message = format!(
+            "runs from ({}, {}) to ({}, {}), must be vertical: its column stands upright; give a side with one x",
+            a[0], a[1], b[0], b[1]
+        );
+        fail(&key, message)
+    })
 }
 
 fn validate_reading(key: &Key, reading: Option<&RecordReading>) -> Check {
-    reading.map_or(Ok(()), |reading| reading.validate(&key.field("record")))
+    reading.map_or(Ok(()), |reading| reading.check(&key.field("record")))
 }
 
 /// Rows of the case need no reading.
@@ -137,7 +112,6 @@ pub(crate) fn missing_table(key: &Key, file: bool) -> Check {
 /// Checks rows, their factor, and that no product of both is beyond `most`.
 fn rows_within(key: &Key, rows: &TimeTable, scale: f64, most: f64, unit: &str) -> Check {
     at_least_two(key, rows)?;
-    number(key, "scale", scale, Range::within(1e12), "", "1 is the default")?;
     for (i, row) in rows.iter().enumerate() {
         if (row[1] * scale).abs() > most {
             let value = row[1] * scale;

@@ -1,31 +1,18 @@
 //! Checks of joint sets and of regions whose joints have another law.
 
-use super::checks::{COORDINATE_MAX, Check, Names, Range, fail, number, optional, point, region};
-use crate::key::{Key, list, nearest};
+use super::checks::{Names, each, region};
+use crate::key::{Check, Key, fail, list, nearest};
 use crate::{AngleDistribution, Case, Distribution, JointSet};
 
 /// Greatest standard deviation of a uniform distribution of positive values, relative to the mean: 1/√3.
 const UNIFORM_RATIO: f64 = 0.577_350_269_189_625_8;
-
-/// Greatest standard deviation of directions (degrees): three of them are a right angle.
-const ANGLE_SD_MAX: f64 = 30.0;
 
 /// Checks the values of a joint set.
 ///
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_set(key: &Key, set: &JointSet) -> Check {
-    let length = Range::above(0.0).to(COORDINATE_MAX);
-    let spread = Range::from(0.0).to(COORDINATE_MAX);
-    let hint = "counter-clockwise from the x axis";
-    optional(key, "angle_deg", set.angle_deg, Range::within(360.0), "degrees", hint)?;
-    let hint = "0 for parallel joints; directions that scatter more are more than one set";
-    number(key, "dip_sd_deg", set.dip_sd_deg, Range::from(0.0).to(ANGLE_SD_MAX), "degrees", hint)?;
-    number(key, "spacing", set.spacing, length, "m", "the mean distance between joints")?;
-    number(key, "spacing_sd", set.spacing_sd, spread, "m", "0 for equal distances")?;
-    optional(key, "trace_length", set.trace_length, length, "m", "leave it out for joints through the whole region")?;
-    number(key, "trace_length_sd", set.trace_length_sd, spread, "m", "0 for equal lengths")?;
-    number(key, "gap", set.gap, spread, "m", "0 for no rock bridges")?;
+    set.check(key)?;
     for (name, value) in [("trace_length_sd", set.trace_length_sd), ("gap", set.gap)] {
         if set.trace_length.is_none() && value > 0.0 {
             let message = format!("is {value} m, but joints without `trace_length` do not end; add `trace_length`");
@@ -43,7 +30,6 @@ pub fn validate_set(key: &Key, set: &JointSet) -> Check {
         }
         None => {}
     }
-    set.origin.as_ref().map_or(Ok(()), |place| point(&key.field("origin"), place))?;
     set.region.as_ref().map_or(Ok(()), |ring| region(&key.field("region"), ring))
 }
 
@@ -66,7 +52,6 @@ pub fn validate_bridges(key: &Key, set: &JointSet, laws: &Names) -> Check {
 /// Checks the keys that the distribution of angles needs, and those that it does not use.
 fn validate_angles(key: &Key, set: &JointSet) -> Check {
     let is_fisher = set.angle_distribution == AngleDistribution::Fisher;
-    optional(key, "fisher_k", set.fisher_k, Range::from(5.0).to(1e6), "", "20 scatters widely, 200 little")?;
     match set.fisher_k {
         Some(k) if !is_fisher => {
             let remedy = "add `angle_distribution = \"fisher\"` or remove it";
@@ -155,16 +140,14 @@ pub fn validate_end(key: &Key, case: &Case, index: usize) -> Check {
 /// The first polygon or law that cannot be used.
 pub fn validate_law_regions(key: &Key, case: &Case) -> Check {
     let laws = Names::of_laws(case);
-    for (i, change) in case.law_regions.iter().enumerate() {
-        let key = key.index(i);
+    each(key, &case.law_regions, |key, change| {
+        change.check(key)?;
         region(&key.field("region"), &change.region)?;
-        if let Some(from) = &change.from {
-            laws.must_hold(&key.field("from"), from)?;
-        }
+        change.from.as_ref().map_or(Ok(()), |from| laws.must_hold(&key.field("from"), from))?;
         laws.must_hold(&key.field("to"), &change.to)?;
         if change.from.as_ref() == Some(&change.to) {
             return fail(&key.field("to"), format!("is {:?}, the law to replace; name another law", change.to));
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }

@@ -1,20 +1,18 @@
 //! Checks of joint laws: what belongs to the kind, and what a stage may change of it.
 
-use super::checks::{Check, Range, fail, number, optional};
-use crate::key::Key;
+use crate::key::{Check, Key, fail};
+use crate::keys::{Range, Rule};
 use crate::{Breaks, Case, Integrator, JointLaw, JointLawKind, LawChange};
 
 /// Residual friction angles of Barton–Bandis joints (degrees): the law ends at 70°.
-const RESIDUAL: Range = Range::from(0.0).to(70.0);
+const RESIDUAL: Rule =
+    JointLaw::rule("friction_deg").in_range(Range::from(0.0).to(70.0)).hint("the residual angle, 20 to 35 is usual");
 
 /// Checks that a law has what its kind needs and nothing else.
 ///
 /// # Errors
 /// The first key that does not fit the kind, or whose value cannot be used.
 pub fn validate_kind(key: &Key, law: &JointLaw) -> Check {
-    optional(key, "jrc", law.jrc, Range::from(0.0).to(30.0), "", "0 for smooth to 20 for very rough joints")?;
-    optional(key, "jcs", law.jcs, Range::above(0.0).to(1e12), "Pa", "up to the strength of the rock, 1e6 to 3e8")?;
-    optional(key, "closure_max", law.closure_max, Range::above(0.0).to(1e3), "m", "leave it out for linear closure")?;
     match law.kind {
         JointLawKind::MohrCoulomb => {
             let given = [("jrc", law.jrc), ("jcs", law.jcs), ("closure_max", law.closure_max)];
@@ -50,7 +48,7 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
             return fail(key, format!("a law of kind barton_bandis needs `{name}`, which is not given; add `{name}`"));
         }
     }
-    number(key, "friction_deg", law.friction_deg, RESIDUAL, "degrees", "the residual angle, 20 to 35 is usual")?;
+    RESIDUAL.check(key, &law.friction_deg, None)?;
     if law.closure_max.is_some() && law.normal_stiffness.is_none() {
         let message = "needs `normal_stiffness`, the stiffness at no closure, which is not given; add it";
         return fail(&key.field("closure_max"), message);
@@ -67,16 +65,11 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
     Ok(())
 }
 
-/// Energies of fracture (J/m²): glass has some 1, rock 10 to 1000 in tension and some 1e5 in shear.
-const ENERGY: Range = Range::above(0.0).to(1e9);
-
 /// Checks that energies of fracture have a strength to take.
 ///
 /// # Errors
 /// An energy that cannot be used, or whose strength the law lacks.
 pub fn validate_energies(key: &Key, law: &JointLaw) -> Check {
-    optional(key, "tension_energy", law.tension_energy, ENERGY, "J/m²", "leave it out for a brittle joint")?;
-    optional(key, "shear_energy", law.shear_energy, ENERGY, "J/m²", "leave it out for a brittle joint")?;
     if let Some(energy) = law.tension_energy.filter(|_| law.tension == 0.0) {
         let message = format!("is {energy} J/m², but `tension` is 0 Pa, so that nothing softens; add `tension`");
         return fail(&key.field("tension_energy"), message);
@@ -199,6 +192,5 @@ pub fn validate_rough_change(key: &Key, change: &LawChange) -> Check {
             return fail(&key.field(name), message);
         }
     }
-    let hint = "the residual angle, 20 to 35 is usual";
-    optional(key, "friction_deg", change.friction_deg, RESIDUAL, "degrees", hint)
+    RESIDUAL.check(key, &change.friction_deg, None)
 }

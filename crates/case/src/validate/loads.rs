@@ -1,7 +1,7 @@
 //! Checks of fixities and loads: exactly one place, and what the kind needs and nothing else.
 
-use super::checks::{Check, Range, fail, number, optional, point, segment, table, unique};
-use crate::key::{Key, list};
+use super::checks::{each, only, segment, table, unique};
+use crate::key::{Check, Key, fail, list};
 use crate::{Fix, Load, LoadKind};
 
 /// Checks the fixities of a case.
@@ -9,34 +9,23 @@ use crate::{Fix, Load, LoadKind};
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_fixes(key: &Key, fixes: &[Fix]) -> Check {
-    for (i, fix) in fixes.iter().enumerate() {
-        validate_fix(&key.index(i), fix)?;
-    }
+    each(key, fixes, validate_fix)?;
     unique(key, "fixity", fixes.iter().map(|fix| fix.name.as_deref()))
 }
 
 fn validate_fix(key: &Key, fix: &Fix) -> Check {
+    fix.check(key)?;
     let places = [
         ("point", fix.point.is_some()),
         ("edge", fix.edge.is_some()),
         ("box", fix.region.is_some()),
         ("block", fix.block.is_some()),
     ];
-    let given: Vec<&str> = places.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect();
-    if given.len() != 1 {
-        let message = format!(
-            "has {} places ({}), must have exactly 1 of point, edge, box, block; keep or add one",
-            given.len(),
-            list(given.iter().copied())
-        );
-        return fail(key, message);
-    }
-    fix.point.as_ref().map_or(Ok(()), |place| point(&key.field("point"), place))?;
-    fix.block.as_ref().map_or(Ok(()), |place| point(&key.field("block"), place))?;
+    let place = only(key, &places)?;
     fix.edge.as_ref().map_or(Ok(()), |edge| segment(&key.field("edge"), edge))?;
     fix.region.as_ref().map_or(Ok(()), |region| rectangle(&key.field("box"), region))?;
     if fix.stiffness.is_some() && (fix.region.is_some() || fix.block.is_some()) {
-        let message = format!("`{}` is held without springs; remove `stiffness`, or hold `point` or `edge`", given[0]);
+        let message = format!("`{place}` is held without springs; remove `stiffness`, or hold `point` or `edge`");
         return fail(&key.field("stiffness"), message);
     }
     if fix.name.is_none() && !fix.active {
@@ -45,12 +34,10 @@ fn validate_fix(key: &Key, fix: &Fix) -> Check {
             "is false, and without a name no stage can activate the fixity; add `name` or remove `active`",
         );
     }
-    optional(key, "stiffness", fix.stiffness, Range::above(0.0).to(1e20), "", "leave it out for the default")
+    Ok(())
 }
 
 fn rectangle(key: &Key, [x_min, y_min, x_max, y_max]: &[f64; 4]) -> Check {
-    point(key, &[*x_min, *y_min])?;
-    point(key, &[*x_max, *y_max])?;
     for (axis, low, high) in [("x", x_min, x_max), ("y", y_min, y_max)] {
         if low >= high {
             let message = format!(
@@ -71,7 +58,9 @@ pub fn validate_loads(key: &Key, loads: &[Load]) -> Check {
     for (i, load) in loads.iter().enumerate() {
         let key = key.index(i);
         validate_fields(&key, load)?;
-        validate_values(&key, load)?;
+        load.check(&key)?;
+        load.edge.as_ref().map_or(Ok(()), |edge| segment(&key.field("edge"), edge))?;
+        load.table.as_ref().map_or(Ok(()), |rows| table(&key.field("table"), rows))?;
     }
     unique(key, "load", loads.iter().map(|load| load.name.as_deref()))
 }
@@ -127,22 +116,4 @@ fn validate_fields(key: &Key, load: &Load) -> Check {
         return fail(key, "a load of kind block needs `force` or `moment`, neither is given; add one");
     }
     Ok(())
-}
-
-fn validate_values(key: &Key, load: &Load) -> Check {
-    load.point.as_ref().map_or(Ok(()), |place| point(&key.field("point"), place))?;
-    load.edge.as_ref().map_or(Ok(()), |edge| segment(&key.field("edge"), edge))?;
-    for (name, pair, size, unit, hint) in [
-        ("force", load.force, 1e15, "N/m", "up and right are positive"),
-        ("traction", load.traction, 1e12, "Pa", "up and right are positive"),
-        ("acceleration", load.acceleration, 1e6, "m/s²", "up and right are positive"),
-    ] {
-        for (i, value) in pair.into_iter().flatten().enumerate() {
-            number(&key.field(name).index(i), "", value, Range::within(size), unit, hint)?;
-        }
-    }
-    optional(key, "moment", load.moment, Range::within(1e18), "N·m/m", "counter-clockwise is positive")?;
-    optional(key, "pressure", load.pressure, Range::within(1e12), "Pa", "into the rock is positive")?;
-    optional(key, "pressure_end", load.pressure_end, Range::within(1e12), "Pa", "leave it out for `pressure`")?;
-    load.table.as_ref().map_or(Ok(()), |rows| table(&key.field("table"), rows))
 }

@@ -13,29 +13,13 @@ mod random;
 mod rock_strength;
 mod stages;
 
-use thiserror::Error;
-
-use super::key::Key;
-use super::{
-    Case, Domain, FmuNotes, Gravity, InSitu, InitialVelocity, JointLaw, Mesh, Output, Plane, ReportNotes, Rock, Solver,
-};
-use checks::{
-    COORDINATE_MAX, Check, Law, Names, ONE_TO_THOUSAND, Range, fail, harmless, number, optional, point, points,
-    polygon, region, unique, whole,
-};
+use crate::key::{Check, Key, fail};
+use crate::keys::{Range, Rule};
+use crate::{Case, Domain, FmuNotes, InSitu, Invalid, JointLaw, Plane, ReportNotes, Rock};
+use checks::{Names, each, harmless, points, polygon, region, unique};
 
 /// Longest line of the cover of a report (bytes).
 const REPORT_NOTE_MAX: usize = 4000;
-
-/// A value of a case that cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{key}: {message}")]
-pub struct Invalid {
-    /// Place in the case, such as `rock.granite.young` or `joint[3].points[1]`.
-    pub key: String,
-    /// The fault, the value, the limit and the remedy.
-    pub message: String,
-}
 
 impl Case {
     /// Checks every value and reference of the case.
@@ -53,7 +37,7 @@ impl Case {
         self.joint_laws.keys().try_for_each(|name| harmless(&root.field("joint_law"), name))?;
         self.validate_drawing()?;
         domain(&root.field("domain"), &self.domain)?;
-        mesh(&root.field("mesh"), &self.mesh)?;
+        self.mesh.check(&root.field("mesh"))?;
         self.validate_joints(&root)?;
         self.validate_rocks(&root.field("rock"))?;
         for (name, law) in &self.joint_laws {
@@ -63,18 +47,16 @@ impl Case {
             joints::validate_breaks(&key, law, self.has_bridges_of(name))?;
         }
         joint_sets::validate_law_regions(&root.field("law_region"), self)?;
-        gravity(&root.field("gravity"), &self.gravity)?;
+        self.gravity.check(&root.field("gravity"))?;
         loads::validate_fixes(&root.field("fix"), &self.fixes)?;
         loads::validate_loads(&root.field("load"), &self.loads)?;
         ground::validate_base_motions(&root.field("base_motion"), self)?;
         ground::validate_quiets(&root.field("quiet"), self)?;
         ground::validate_free_fields(&root.field("free_field"), &self.free_fields)?;
         bolts::validate_bolts(&root.field("bolt"), &self.bolts)?;
-        for (i, start) in self.initial_velocities.iter().enumerate() {
-            initial_velocity(&root.field("initial_velocity").index(i), start)?;
-        }
+        each(&root.field("initial_velocity"), &self.initial_velocities, |key, start| start.check(key))?;
         if let Some(stress) = &self.in_situ {
-            in_situ(&root.field("in_situ"), stress)?;
+            stress.check(&root.field("in_situ"))?;
             self.validate_stress_out(&root.field("in_situ"), stress)?;
         }
         if let Some(water) = &self.water {
@@ -88,8 +70,8 @@ impl Case {
         stages::validate_stages(&root.field("stage"), self)?;
         bolts::validate_installs(&root.field("stage"), self)?;
         self.validate_monitors(&root.field("monitor"))?;
-        output(&root.field("output"), &self.output)?;
-        solver(&root.field("solver"), &self.solver)?;
+        self.output.check(&root.field("output"))?;
+        self.solver.check(&root.field("solver"))?;
         random::validate_random(&root, self)?;
         self.validate_drawing_is_used()
     }
@@ -115,6 +97,7 @@ impl Case {
         }
         for (i, trace) in self.joints.iter().enumerate() {
             let check = |key: &Key| {
+                trace.check(key)?;
                 points(&key.field("points"), &trace.points, 2, "a joint trace")?;
                 self.validate_law_of_joint(&laws, key, trace.law.as_deref())
             };
@@ -130,11 +113,11 @@ impl Case {
             self.validate_law_of_joint(&laws, &key, set.law.as_deref())?;
             joint_sets::validate_bridges(&key, set, &laws)?;
         }
-        for (i, bridge) in self.bridges.iter().enumerate() {
-            let key = root.field("bridge").index(i);
+        each(&root.field("bridge"), &self.bridges, |key, bridge| {
+            bridge.check(key)?;
             points(&key.field("points"), &bridge.points, 2, "a rock bridge")?;
-            laws.must_hold(&key.field("law"), &bridge.law)?;
-        }
+            laws.must_hold(&key.field("law"), &bridge.law)
+        })?;
         if let Some(law) = &self.domain.bridge_law {
             laws.must_hold(&root.field("domain").field("bridge_law"), law)?;
         }
@@ -199,14 +182,13 @@ impl Case {
     }
 
     fn validate_monitors(&self, key: &Key) -> Check {
-        for (i, monitor) in self.monitors.iter().enumerate() {
-            point(&key.index(i).field("point"), &monitor.point)?;
-        }
+        each(key, &self.monitors, |key, monitor| monitor.check(key))?;
         unique(key, "monitor", self.monitors.iter().map(|monitor| Some(monitor.name.as_str())))
     }
 }
 
 fn domain(key: &Key, domain: &Domain) -> Check {
+    domain.check(key)?;
     if domain.geometry_file.is_some() {
         return fail(
             &key.field("geometry_file"),
@@ -225,90 +207,23 @@ fn domain(key: &Key, domain: &Domain) -> Check {
             polygon(&key.field(name).index(i), ring)?;
         }
     }
-    optional(key, "snap_tolerance", domain.snap_tolerance, Range::above(0.0).to(1e3), "m", "1e-6 of the model's size")?;
-    optional(key, "extend_ends", domain.extend_ends, Range::from(0.0).to(1e3), "m", "0.0023 of the model's size")?;
-    optional(key, "near_ends", domain.near_ends, Range::from(0.0).to(1e3), "m", "0.02 of the model's size")
-}
-
-fn mesh(key: &Key, mesh: &Mesh) -> Check {
-    number(key, "size", mesh.size, Range::above(0.0).to(1e6), "m", "about a fifth of the smallest block is usual")?;
-    number(key, "angle_deg", mesh.angle_deg, Range::within(360.0), "degrees", "0 to 60 gives every lattice")?;
-    point(&key.field("origin"), &mesh.origin)?;
-    optional(key, "least_block", mesh.least_block, Range::from(0.0).to(1e6), "m²", "(size/20)² is the default")
+    Ok(())
 }
 
 fn rock(key: &Key, rock: &Rock) -> Check {
-    number(key, "density", rock.density, Range::from(1e-3).to(1e6), "kg/m³", "")?;
-    number(key, "young", rock.young, Range::from(1.0).to(1e15), "Pa", "")?;
-    let poisson = match rock.plane {
-        Plane::Strain => Range::above(-1.0).below(0.5),
-        Plane::Stress => Range::above(-1.0).to(0.5),
-    };
-    number(key, "poisson", rock.poisson, poisson, "", "rock has 0.1 to 0.4")?;
-    rock_strength::validate_strength(key, rock)?;
-    if let Some(ring) = &rock.region {
-        region(&key.field("region"), ring)?;
+    rock.check(key)?;
+    if rock.plane == Plane::Strain {
+        const RULE: Rule = Rock::rule("poisson").in_range(Range::above(-1.0).below(0.5));
+        RULE.check(key, &rock.poisson, None)?;
     }
-    points(&key.field("blocks"), &rock.blocks, 0, "a list of blocks")
+    rock_strength::validate_strength(key, rock)?;
+    rock.region.as_ref().map_or(Ok(()), |ring| region(&key.field("region"), ring))
 }
 
 fn joint_law(key: &Key, law: &JointLaw) -> Check {
-    optional(key, "normal_stiffness", law.normal_stiffness, Law::STIFFNESS, "Pa/m", "leave it out for the solver's")?;
-    optional(key, "shear_stiffness", law.shear_stiffness, Law::STIFFNESS, "Pa/m", "leave it out for the solver's")?;
-    number(key, "friction_deg", law.friction_deg, Law::ANGLE, "degrees", "rock joints have 15 to 50")?;
-    number(key, "cohesion", law.cohesion, Law::STRENGTH, "Pa", "0 for a clean joint")?;
-    number(key, "tension", law.tension, Law::STRENGTH, "Pa", "the tensile strength is written positive")?;
-    optional(
-        key,
-        "residual_friction_deg",
-        law.residual_friction_deg,
-        Law::ANGLE,
-        "degrees",
-        "leave it out for the peak",
-    )?;
-    optional(key, "residual_cohesion", law.residual_cohesion, Law::STRENGTH, "Pa", "leave it out for the peak")?;
-    number(key, "residual_tension", law.residual_tension, Law::STRENGTH, "Pa", "0 for a broken joint")?;
-    number(key, "dilation_deg", law.dilation_deg, Law::ANGLE, "degrees", "0 for a smooth joint")?;
-    optional(key, "dilation_slip", law.dilation_slip, Range::above(0.0).to(1e6), "m", "leave it out for 0.05 m")?;
-    optional(key, "crush", law.crush, Range::from(1e3).to(1e12), "Pa", "the strength of the rock, 1e6 to 3e8")?;
+    law.check(key)?;
     joints::validate_kind(key, law)?;
     joints::validate_energies(key, law)
-}
-
-fn gravity(key: &Key, gravity: &Gravity) -> Check {
-    number(key, "x", gravity.x, Range::within(1e4), "m/s²", "the standard is 0")?;
-    number(key, "y", gravity.y, Range::within(1e4), "m/s²", "the standard is -9.81")
-}
-
-fn initial_velocity(key: &Key, start: &InitialVelocity) -> Check {
-    if let Some(block) = &start.block {
-        point(&key.field("block"), block)?;
-    }
-    for (i, &value) in start.velocity.iter().enumerate() {
-        number(&key.field("velocity").index(i), "", value, Range::within(1e5), "m/s", "rock falls at 1 to 100")?;
-    }
-    number(key, "angular_velocity", start.angular_velocity, Range::within(1e5), "rad/s", "0 for no rotation")
-}
-
-fn in_situ(key: &Key, stress: &InSitu) -> Check {
-    let hint = "tension is positive, compression negative";
-    for (name, value) in [("sxx", stress.sxx), ("syy", stress.syy), ("sxy", Some(stress.sxy))] {
-        optional(key, name, value, Range::within(1e12), "Pa", hint)?;
-    }
-    for (i, &value) in stress.gradient.iter().enumerate() {
-        number(
-            &key.field("gradient").index(i),
-            "",
-            value,
-            Range::within(1e9),
-            "Pa/m",
-            "density times gravity is usual",
-        )?;
-    }
-    optional(key, "szz", stress.szz, Range::within(1e12), "Pa", hint)?;
-    let slope = "density times gravity is usual";
-    number(key, "szz_gradient", stress.szz_gradient, Range::within(1e9), "Pa/m", slope)?;
-    optional(key, "y_reference", stress.y_reference, Range::within(COORDINATE_MAX), "m", "a height of the model")
 }
 
 fn fmu_notes(key: &Key, notes: &FmuNotes) -> Check {
@@ -332,40 +247,4 @@ fn report_notes(key: &Key, notes: &ReportNotes) -> Check {
         }
     }
     Ok(())
-}
-
-fn output(key: &Key, output: &Output) -> Check {
-    for (name, value) in [
-        ("frame_interval", output.frame_interval),
-        ("history_interval", output.history_interval),
-        ("checkpoint_interval", output.checkpoint_interval),
-    ] {
-        optional(key, name, value, Range::above(0.0).to(1e12), "s", "leave it out for the default")?;
-    }
-    Ok(())
-}
-
-fn solver(key: &Key, solver: &Solver) -> Check {
-    let share = Range::above(0.0).to(1.0);
-    let time = Range::above(0.0).to(1e9);
-    optional(key, "communication_step", solver.communication_step, time, "s", "leave it out for the default")?;
-    optional(key, "dt_max", solver.dt_max, time, "s", "leave it out for the stability limit")?;
-    number(key, "dt_safety", solver.dt_safety, share, "", "0.9 is the default")?;
-    number(key, "contact_stiffness", solver.contact_stiffness, Range::above(0.0).to(1e6), "", "0.6 is the default")?;
-    number(key, "shear_ratio", solver.shear_ratio, Range::above(0.0).to(10.0), "", "0.5 is the default")?;
-    number(key, "contact_theta", solver.contact_theta, Range::from(1.0).to(1e6), "", "4 is the default")?;
-    number(key, "contact_tolerance", solver.contact_tolerance, share, "", "0.01 is the default")?;
-    let hint = "leave it out for the default, a shear wave's way through the blocks";
-    optional(key, "friction_delay", solver.friction_delay, Range::from(0.0).to(1.0), "s", hint)?;
-    whole(key, "sweeps_max", u64::from(solver.sweeps_max), ONE_TO_THOUSAND, "100 is the default")?;
-    number(key, "mass_scaling", solver.mass_scaling, Range::from(1.0).to(100.0), "", "1 is the default")?;
-    number(key, "penetration_limit", solver.penetration_limit, share, "", "0.2 is the default")?;
-    let hint = "leave it out for 20 explicit steps";
-    optional(key, "implicit_step", solver.implicit_step, time, "s", hint)?;
-    whole(key, "iterations_max", u64::from(solver.iterations_max), ONE_TO_THOUSAND, "8 is the default")?;
-    number(key, "displacement_ratio", solver.displacement_ratio, share, "", "0.01 is the default")?;
-    let length = Range::above(0.0).to(COORDINATE_MAX);
-    let hint = "leave it out for the mesh size";
-    optional(key, "failure_displacement", solver.failure_displacement, length, "m", hint)?;
-    whole(key, "memory_limit", solver.memory_limit, (1, u64::MAX), "8589934592 (8 GiB) is the default")
 }

@@ -1,8 +1,7 @@
 //! Checks of water and ports.
 
-use super::checks::{COORDINATE_MAX, Check, Range, fail, number, optional, point, points, segment, unique};
-use crate::key::{Key, list};
-use crate::limits::VALUE_MAX;
+use super::checks::{each, only, points, segment, unique};
+use crate::key::{Check, Key, fail};
 use crate::{Port, Water, WaterSurface};
 
 /// Checks the water of a case.
@@ -10,10 +9,10 @@ use crate::{Port, Water, WaterSurface};
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_water(key: &Key, water: &Water) -> Check {
-    number(key, "density", water.density, Range::above(0.0).to(1e5), "kg/m³", "1000 is the default")?;
+    water.check(key)?;
     validate_surface(key, &water.surface())?;
     let Some(faces) = &water.faces else { return Ok(()) };
-    faces.iter().enumerate().try_for_each(|(i, face)| segment(&key.field("faces").index(i), face))
+    each(&key.field("faces"), faces, segment)
 }
 
 /// Checks a surface of water.
@@ -21,7 +20,7 @@ pub fn validate_water(key: &Key, water: &Water) -> Check {
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_surface(key: &Key, surface: &WaterSurface) -> Check {
-    optional(key, "level", surface.level, Range::within(COORDINATE_MAX), "m", "the height y of the water surface")?;
+    surface.check(key)?;
     match (&surface.level, &surface.table) {
         (Some(_), None) => Ok(()),
         (None, Some(table)) => validate_table(&key.field("table"), table),
@@ -56,13 +55,12 @@ fn validate_table(key: &Key, table: &[[f64; 2]]) -> Check {
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_ports(key: &Key, ports: &[Port]) -> Check {
-    for (i, port) in ports.iter().enumerate() {
-        validate_port(&key.index(i), port)?;
-    }
+    each(key, ports, validate_port)?;
     unique(key, "port", ports.iter().map(|port| Some(port.name.as_str())))
 }
 
 fn validate_port(key: &Key, port: &Port) -> Check {
+    port.check(key)?;
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !port.name.starts_with(|c: char| c.is_ascii_alphabetic()) || !port.name.chars().all(is_word) {
         let message = format!(
@@ -74,32 +72,21 @@ fn validate_port(key: &Key, port: &Port) -> Check {
     }
     let places =
         [("block", port.block.is_some()), ("boundary", port.boundary.is_some()), ("joint", port.joint.is_some())];
-    let given: Vec<&str> = places.iter().filter(|(_, there)| *there).map(|(name, _)| *name).collect();
-    if given.len() != 1 {
-        let message = format!(
-            "has {} places ({}), must have exactly 1 of block, boundary, joint; keep or add one",
-            given.len(),
-            list(given.iter().copied())
-        );
-        return fail(key, message);
-    }
-    port.block.as_ref().map_or(Ok(()), |place| point(&key.field("block"), place))?;
+    let place = only(key, &places)?;
     port.boundary.as_ref().map_or(Ok(()), |edge| segment(&key.field("boundary"), edge))?;
     port.joint.as_ref().map_or(Ok(()), |edge| segment(&key.field("joint"), edge))?;
-    validate_start(key, port, given[0])
+    validate_start(key, port, place)
 }
 
-/// Checks the values at the start: in range, and none but those of the kind of port.
+/// Checks that no values at the start are given but those of the kind of port.
 fn validate_start(key: &Key, port: &Port, kind: &str) -> Check {
-    let hint = "what acts from the start";
     let values = [
-        ("force", port.force, "N/m", ["block", "block"]),
-        ("moment", [port.moment, 0.0], "N·m/m", ["block", "block"]),
-        ("traction", port.traction, "Pa", ["boundary", "boundary"]),
-        ("pressure", [port.pressure, 0.0], "Pa", ["boundary", "joint"]),
+        ("force", port.force, ["block", "block"]),
+        ("moment", [port.moment, 0.0], ["block", "block"]),
+        ("traction", port.traction, ["boundary", "boundary"]),
+        ("pressure", [port.pressure, 0.0], ["boundary", "joint"]),
     ];
-    for (name, value, unit, kinds) in values {
-        value.iter().try_for_each(|v| number(key, name, *v, Range::within(VALUE_MAX), unit, hint))?;
+    for (name, value, kinds) in values {
         if value != [0.0; 2] && !kinds.contains(&kind) {
             let message = format!("a port of kind `{kind}` takes no {name}; remove it, or use `{}`", kinds[0]);
             return fail(&key.field(name), message);

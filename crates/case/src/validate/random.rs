@@ -1,16 +1,9 @@
 //! Checks of random values, their correlations and the ensemble.
 
-use super::checks::{Check, Range, fail, number, whole};
-use crate::key::{Key, list};
-use crate::random::{Ensemble, EnsembleOutput, RandomDistribution, RandomVariable, Sampling};
+use crate::key::{Check, Key, fail, list};
+use crate::keys::{Range, Rule};
+use crate::random::{Ensemble, EnsembleOutput, POSITIVE, RandomDistribution, RandomVariable, Sampling};
 use crate::{Case, RandomOf};
-
-/// Greatest magnitude of a parameter, beyond that of any value of a case.
-const PARAMETER: Range = Range::within(1e20);
-/// Parameters that must be positive.
-const POSITIVE: Range = Range::above(0.0).to(1e20);
-/// Greatest first seed: sums of it and the number of a sample are whole numbers of TOML.
-const FIRST_MAX: u64 = (1 << 62) - 1;
 
 /// Checks `[[random]]`, `[[random_correlation]]` and `[ensemble]`.
 ///
@@ -24,6 +17,7 @@ pub fn validate_random(root: &Key, case: &Case) -> Check {
             let message = format!("is {:?}, that of random[{first}] already; remove one of them", variable.key);
             return fail(&key.field("key"), message);
         }
+        variable.check(&key)?;
         parameters(&key, variable)?;
         shape(&key, variable)?;
     }
@@ -48,9 +42,7 @@ fn parameters(key: &Key, variable: &RandomVariable) -> Check {
                 let message = format!("is {value}, but a {} distribution has {has}; remove it", kind.name());
                 return fail(&key.field(name), message);
             }
-            Some(value) if name == "sd" => number(key, name, value, POSITIVE, "", "write a fixed value otherwise")?,
-            Some(value) => number(key, name, value, PARAMETER, "", "correct it")?,
-            None => {}
+            _ => {}
         }
     }
     match variable.first {
@@ -58,11 +50,10 @@ fn parameters(key: &Key, variable: &RandomVariable) -> Check {
             let message = format!("is {first}, but a {} distribution has no seeds; remove it", kind.name());
             fail(&key.field("first"), message)
         }
-        Some(first) => whole(key, "first", first, (0, FIRST_MAX), "1 is usual"),
         None if is_seeds && variable.of != RandomOf::Value => {
             fail(&key.field("of"), "seeds are whole numbers of the key itself; remove it")
         }
-        None => Ok(()),
+        _ => Ok(()),
     }
 }
 
@@ -70,7 +61,7 @@ fn parameters(key: &Key, variable: &RandomVariable) -> Check {
 fn shape(key: &Key, variable: &RandomVariable) -> Check {
     let positive = [RandomDistribution::Lognormal, RandomDistribution::Exponential];
     if let Some(mean) = variable.mean.filter(|_| positive.contains(&variable.distribution)) {
-        number(key, "mean", mean, POSITIVE, "", "this distribution has positive values alone")?;
+        POSITIVE.of_key("mean").hint("this distribution has positive values alone").check(key, &mean, None)?;
     }
     ascending(key, [("least", variable.least), ("most", variable.most)], false)?;
     ascending(key, [("least", variable.least), ("mode", variable.mode)], true)?;
@@ -109,20 +100,22 @@ fn correlations(key: &Key, case: &Case) -> Check {
         if before.iter().any(|other| sorted(&other.keys) == sorted(&correlation.keys)) {
             return fail(&key.field("keys"), format!("{a:?} and {b:?} have a correlation already; remove one"));
         }
-        number(&key, "value", correlation.value, Range::above(-1.0).below(1.0), "", "0 is no correlation")?;
+        correlation.check(&key)?;
     }
     Ok(())
 }
 
 fn ensemble(key: &Key, ensemble: &Ensemble) -> Check {
-    whole(key, "samples", ensemble.samples, (1, 10_000_000), "100 to 1000 are usual")?;
-    number(key, "limit", ensemble.limit, PARAMETER, "", "1 is the limit of a factor of safety")?;
+    ensemble.check(key)?;
     if ensemble.output == EnsembleOutput::Failure {
-        let hint = "with output = \"failure\" trials are made at it, which reach so far";
-        number(key, "limit", ensemble.limit, Range::from(0.05).to(20.0), "", hint)?;
+        const RULE: Rule = Ensemble::rule("limit")
+            .in_range(Range::from(0.05).to(20.0))
+            .hint("with output = \"failure\" trials are made at it, which reach so far");
+        RULE.check(key, &ensemble.limit, None)?;
     }
-    let Some(interval) = ensemble.interval else { return Ok(()) };
-    number(key, "interval", interval, Range::above(0.0).below(1.0), "", "0.05 is usual")?;
+    if ensemble.interval.is_none() {
+        return Ok(());
+    }
     if ensemble.sampling != Sampling::MonteCarlo {
         let message = "needs sampling = \"monte_carlo\": the first samples of a Latin hypercube are no sample of the \
                        whole; set that, or leave out `interval`";

@@ -1,9 +1,12 @@
 //! Checks of stages: what fits the kind, and references to laws and fixities.
 
-use super::checks::{Check, Law, Names, Range, fail, number, optional, points, region, unique};
+use super::checks::{Names, region, unique};
 use super::{joints, ports};
-use crate::key::Key;
+use crate::key::{Check, Key, fail};
+use crate::keys::{Range, Rule};
 use crate::{Case, JointLaw, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
+
+const RAMP: Rule = Stage::rule("ramp");
 
 /// Checks the stages of a case.
 ///
@@ -19,7 +22,6 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
     for (i, stage) in case.stages.iter().enumerate() {
         let key = key.index(i);
         validate_motion(&key, stage)?;
-        points(&key.field("excavate"), &stage.excavate, 0, "a list of blocks")?;
         stage.excavate_region.as_ref().map_or(Ok(()), |ring| region(&key.field("excavate_region"), ring))?;
         validate_laws(&key, stage, case, &laws)?;
         validate_fixities(&key, stage, &fixes)?;
@@ -37,7 +39,7 @@ fn validate_motion(key: &Key, stage: &Stage) -> Check {
         );
         return fail(&key.field("duration"), message);
     }
-    number(key, "duration", stage.duration, Range::above(0.0).to(1e9), "s", "give the simulated time of the stage")?;
+    stage.check(key)?;
     let (kind, other, refused) = match stage.kind {
         StageKind::Static => ("static", "dynamic", [("damping", stage.damping), ("", None)]),
         StageKind::Dynamic => ("dynamic", "static", [("convergence", stage.convergence), ("ramp", stage.ramp)]),
@@ -48,10 +50,7 @@ fn validate_motion(key: &Key, stage: &Stage) -> Check {
             return fail(&key.field(name), message);
         }
     }
-    let share = Range::above(0.0).below(1.0);
-    optional(key, "convergence", stage.convergence, share, "", "1e-3 to 1e-5 is usual")?;
-    optional(key, "ramp", stage.ramp, Range::from(0.0).to(stage.duration), "s", "it ends within the stage's duration")?;
-    optional(key, "damping", stage.damping, Range::from(0.0).to(1.0), "", "0 to 0.1 is usual")
+    RAMP.in_range(Range::from(0.0).to(stage.duration)).check(key, &stage.ramp, None)
 }
 
 fn validate_water(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
@@ -96,9 +95,7 @@ fn validate_change(key: &Key, change: &LawChange, laws: &Names) -> Check {
     if change.friction_deg.is_none() && change.cohesion.is_none() && change.tension.is_none() {
         return fail(key, "changes nothing; give `friction_deg`, `cohesion` or `tension`, or remove it");
     }
-    optional(key, "friction_deg", change.friction_deg, Law::ANGLE, "degrees", "rock joints have 15 to 50")?;
-    optional(key, "cohesion", change.cohesion, Law::STRENGTH, "Pa", "0 for a clean joint")?;
-    optional(key, "tension", change.tension, Law::STRENGTH, "Pa", "the tensile strength is written positive")
+    change.check(key)
 }
 
 fn validate_fixities(key: &Key, stage: &Stage, fixes: &Names) -> Check {

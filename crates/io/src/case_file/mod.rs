@@ -240,7 +240,7 @@ fn merge_record(
     let kind = of_field.or(kind);
     let reading = keys.reading.take().unwrap_or_default();
     let located = |invalid: Invalid| source.locate(&invalid.key, &invalid.message);
-    reading.validate(&at.field("record")).map_err(located)?;
+    reading.check(&at.field("record")).map_err(located)?;
     let wanted = Wanted { kind, reading: &reading, scale: keys.scale };
     let record = record_file::parse(&shown, &text, &wanted).map_err(|fault| match fault {
         record_file::Fault::Line(line, message) => CaseError::at(&shown, line, "", message),

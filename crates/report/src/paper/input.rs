@@ -1,5 +1,7 @@
 //! Input: section, rock, joints, water, loads, bolts, stages.
 
+use enmm_case::keys::Rule;
+use enmm_case::{Bolt, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, Rock, Section, Water};
 use serde_json::Value;
 
 use super::number::{Digits, Number, length, plain, prefixed, steel_area};
@@ -9,6 +11,9 @@ use super::table::{Cell, facts, table};
 
 use Digits::Typed;
 
+/// Cells with the heads of their columns.
+type Row = Vec<(&'static str, Cell)>;
+
 /// The chapters of input; empty where no record has it.
 pub fn input_chapter(records: &Records) -> String {
     let Some(record) = records.with_input() else { return String::new() };
@@ -16,11 +21,7 @@ pub fn input_chapter(records: &Records) -> String {
     let model = records.run.as_ref().map_or(String::new(), |run| {
         figure(run, "model", "Section with rock, joints, supports, loads, water and bolts; the bar gives the scale.")
     });
-    let section = facts(&[
-        ("Azimuth of the x axis", plain(&input["section"]["azimuth_deg"], "°", Typed).into()),
-        ("Gravity, vertical", plain(&input["gravity"]["y"], "m/s²", Typed).into()),
-        ("Gravity, horizontal", nonzero(&input["gravity"]["x"], |value| plain(value, "m/s²", Typed))),
-    ]);
+    let section = facts(&[keys(Section::KEYS, &input["section"]), keys(Gravity::KEYS, &input["gravity"])].concat());
     let section = format!(
         "{model}{section}<p>Lengths in metres, y upwards; tension is positive; forces are per metre of \
                            slope unless a bar is named.</p>\n"
@@ -35,13 +36,32 @@ pub fn input_chapter(records: &Records) -> String {
         + &chapter("Stages as planned", &stages(input))
 }
 
-/// A number that is not 0.
-fn nonzero(value: &Value, number: impl Fn(&Value) -> Option<Number>) -> Cell {
-    if value.as_f64().is_some_and(|value| value != 0.0) { number(value).into() } else { Cell::Empty }
+/// The keys of a table that the report shows, in the order of the case.
+fn keys(rules: &[Rule], values: &Value) -> Row {
+    let shown = rules.iter().filter(|rule| !rule.label.is_empty());
+    shown.map(|rule| (rule.label, number(rule, &values[rule.key]))).collect()
 }
 
-fn stress(value: &Value) -> Option<Number> {
-    prefixed(value, "Pa", Typed)
+/// A number of a key as it was typed, in the unit that suits it.
+fn number(rule: &Rule, value: &Value) -> Cell {
+    if rule.is_none_at_zero && value.as_f64() == Some(0.0) {
+        return Cell::Empty;
+    }
+    match rule.unit.sign {
+        "m" => length(value, Typed),
+        "m²" => steel_area(value),
+        unit @ ("Pa" | "Pa/m" | "N" | "N/m" | "N·m/m") => prefixed(value, unit, Typed),
+        unit => plain(value, unit, Typed),
+    }
+    .into()
+}
+
+/// A table of rows that have the same heads.
+fn listed(rows: impl Iterator<Item = Row>) -> String {
+    let rows: Vec<Row> = rows.collect();
+    let heads: Vec<&str> = rows.iter().take(1).flatten().map(|(head, _)| *head).collect();
+    let cells: Vec<Vec<Cell>> = rows.into_iter().map(|row| row.into_iter().map(|(_, cell)| cell).collect()).collect();
+    table(&heads, &cells)
 }
 
 /// The entries of a map by name.
@@ -50,118 +70,32 @@ fn named(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
 }
 
 fn rocks(input: &Value) -> String {
-    let row = |(name, rock): (&String, &Value)| -> Vec<Cell> {
-        vec![
-            name.as_str().into(),
-            plain(&rock["density"], "kg/m³", Typed).into(),
-            stress(&rock["young"]).into(),
-            plain(&rock["poisson"], "", Typed).into(),
-            plain(&rock["friction_deg"], "°", Typed).into(),
-            stress(&rock["cohesion"]).into(),
-            stress(&rock["tension"]).into(),
-            plain(&rock["dilation_deg"], "°", Typed).into(),
-            stress(&rock["hoek_brown"]["sigma_ci"]).into(),
-            plain(&rock["hoek_brown"]["mi"], "", Typed).into(),
-            plain(&rock["hoek_brown"]["gsi"], "", Typed).into(),
-            plain(&rock["hoek_brown"]["d"], "", Typed).into(),
-        ]
+    let row = |(name, rock): (&String, &Value)| {
+        let name = vec![("Rock", name.as_str().into())];
+        [name, keys(Rock::KEYS, rock), keys(HoekBrown::KEYS, &rock["hoek_brown"])].concat()
     };
-    let rows: Vec<Vec<Cell>> = named(&input["rocks"]).map(row).collect();
-    let head = [
-        "Rock",
-        "Density",
-        "Young's modulus",
-        "Poisson's ratio",
-        "Friction",
-        "Cohesion",
-        "Tension",
-        "Dilation",
-        "Hoek–Brown σci",
-        "mi",
-        "GSI",
-        "D",
-    ];
-    part("Rock", &table(&head, &rows))
+    part("Rock", &listed(named(&input["rocks"]).map(row)))
 }
 
 fn laws(input: &Value) -> String {
-    let row = |(name, law): (&String, &Value)| -> Vec<Cell> {
+    let row = |(name, law): (&String, &Value)| {
         let kind = if text(&law["kind"]) == "barton_bandis" { "Barton–Bandis" } else { "Mohr–Coulomb" };
-        vec![
-            name.as_str().into(),
-            kind.into(),
-            plain(&law["friction_deg"], "°", Typed).into(),
-            stress(&law["cohesion"]).into(),
-            stress(&law["tension"]).into(),
-            plain(&law["residual_friction_deg"], "°", Typed).into(),
-            stress(&law["residual_cohesion"]).into(),
-            nonzero(&law["dilation_deg"], |value| plain(value, "°", Typed)),
-            plain(&law["jrc"], "", Typed).into(),
-            stress(&law["jcs"]).into(),
-            prefixed(&law["normal_stiffness"], "Pa/m", Typed).into(),
-            prefixed(&law["shear_stiffness"], "Pa/m", Typed).into(),
-            plain(&law["tension_energy"], "J/m²", Typed).into(),
-            plain(&law["shear_energy"], "J/m²", Typed).into(),
-        ]
+        [vec![("Joint", name.as_str().into()), ("Law", kind.into())], keys(JointLaw::KEYS, law)].concat()
     };
-    let rows: Vec<Vec<Cell>> = named(&input["joint_laws"]).map(row).collect();
-    let head = [
-        "Joint",
-        "Law",
-        "Friction",
-        "Cohesion",
-        "Tension",
-        "Residual friction",
-        "Residual cohesion",
-        "Dilation",
-        "JRC",
-        "JCS",
-        "Normal stiffness",
-        "Shear stiffness",
-        "Energy of fracture, opening",
-        "Energy of fracture, slip",
-    ];
-    part("Strength of joints", &table(&head, &rows))
+    part("Strength of joints", &listed(named(&input["joint_laws"]).map(row)))
 }
 
 fn sets(input: &Value) -> String {
-    let row = |(k, set): (usize, &Value)| -> Vec<Cell> {
+    let row = |(k, set): (usize, &Value)| {
         let name = match text(&set["name"]) {
             "" => format!("joint_set[{k}]"),
             name => name.to_owned(),
         };
-        let scatter = if set["angle_sd_deg"].is_null() { &set["dip_sd_deg"] } else { &set["angle_sd_deg"] };
-        vec![
-            name.into(),
-            text_or_none(&set["law"]),
-            plain(&set["dip_deg"], "°", Typed).into(),
-            text_or_none(&set["dips"]),
-            plain(&set["dip_direction_deg"], "°", Typed).into(),
-            plain(&set["angle_deg"], "°", Typed).into(),
-            nonzero(scatter, |value| plain(value, "°", Typed)),
-            length(&set["spacing"], Typed).into(),
-            nonzero(&set["spacing_sd"], |value| length(value, Typed)),
-            length(&set["trace_length"], Typed).into(),
-            plain(&set["persistence"], "", Typed).into(),
-            plain(&set["seed"], "", Typed).into(),
-        ]
+        let words =
+            [("Joint set", name.into()), ("Joint", text_or_none(&set["law"])), ("To the", text_or_none(&set["dips"]))];
+        [words.to_vec(), keys(JointSet::KEYS, set)].concat()
     };
-    let rows: Vec<Vec<Cell>> = entries(&input["joint_sets"]).iter().enumerate().map(row).collect();
-    let head = [
-        "Joint set",
-        "Joint",
-        "Dip",
-        "To the",
-        "Dip direction",
-        "Angle from x axis",
-        "Scatter of angle",
-        "Spacing",
-        "Scatter of spacing",
-        "Trace length",
-        "Persistence",
-        "Seed",
-    ];
-    part("Joint sets", &table(&head, &rows))
+    part("Joint sets", &listed(entries(&input["joint_sets"]).iter().enumerate().map(row)))
 }
 
 fn joints(input: &Value) -> String {
@@ -178,17 +112,13 @@ fn text_or_none(value: &Value) -> Cell {
 }
 
 fn in_situ(input: &Value) -> String {
-    let stress_now = &input["in_situ"];
-    let gradient = |k: usize| nonzero(&stress_now["gradient"][k], |value| prefixed(value, "Pa/m", Typed));
-    let rows = [
-        ("Horizontal over vertical stress", plain(&stress_now["k0"], "", Typed).into()),
-        ("Horizontal stress", stress(&stress_now["sxx"]).into()),
-        ("Vertical stress", stress(&stress_now["syy"]).into()),
+    let stress = &input["in_situ"];
+    let gradient = |k: usize| number(&InSitu::rule("gradient").none_at_zero(), &stress["gradient"][k]);
+    let gradients = [
         ("Change of the horizontal stress with height", gradient(0)),
         ("Change of the vertical stress with height", gradient(1)),
-        ("Height of reference", length(&stress_now["y_reference"], Typed).into()),
     ];
-    part("Stress in the ground", &facts(&rows))
+    part("Stress in the ground", &facts(&[keys(InSitu::KEYS, stress), gradients.to_vec()].concat()))
 }
 
 fn water(input: &Value) -> String {
@@ -198,13 +128,8 @@ fn water(input: &Value) -> String {
         Some(false) => "dry".into(),
         None => Cell::Empty,
     };
-    let rows = [
-        ("Level", length(&water["level"], Typed).into()),
-        ("Water table", points(&water["table"])),
-        ("Density", plain(&water["density"], "kg/m³", Typed).into()),
-        ("Joints", full),
-    ];
-    part("Water", &facts(&rows))
+    let others = [("Water table", points(&water["table"])), ("Joints", full)];
+    part("Water", &facts(&[keys(Water::KEYS, water), others.to_vec()].concat()))
 }
 
 /// Surfaces of the water that stages bring.
@@ -234,23 +159,21 @@ fn points(value: &Value) -> Cell {
 }
 
 fn loads(input: &Value) -> String {
-    let row = |load: &Value| -> Vec<Cell> {
-        let of = |key: &str, k: usize, unit: &str| nonzero(&load[key][k], |value| prefixed(value, unit, Typed));
-        let first = |cells: [Cell; 3]| cells.into_iter().find(|cell| *cell != Cell::Empty).unwrap_or(Cell::Empty);
-        let axis = |k: usize| first([of("force", k, "N/m"), of("traction", k, "Pa"), of("acceleration", k, "m/s²")]);
-        vec![
-            text_or_none(&load["name"]),
-            text(&load["kind"]).into(),
-            axis(0),
-            axis(1),
-            nonzero(&load["moment"], |value| prefixed(value, "N·m/m", Typed)),
-            stress(&load["pressure"]).into(),
-            stress(&load["pressure_end"]).into(),
-        ]
+    let row = |load: &Value| {
+        let vectors = [Load::rule("force"), Load::rule("traction"), Load::rule("acceleration")];
+        let axis = |k: usize| {
+            let cells = vectors.iter().map(|rule| number(&rule.none_at_zero(), &load[rule.key][k]));
+            cells.into_iter().find(|cell| *cell != Cell::Empty).unwrap_or(Cell::Empty)
+        };
+        let first = [
+            ("Load", text_or_none(&load["name"])),
+            ("Kind", text(&load["kind"]).into()),
+            ("Horizontal", axis(0)),
+            ("Vertical", axis(1)),
+        ];
+        [first.to_vec(), keys(Load::KEYS, load)].concat()
     };
-    let rows: Vec<Vec<Cell>> = entries(&input["loads"]).iter().map(row).collect();
-    let head = ["Load", "Kind", "Horizontal", "Vertical", "Moment", "Pressure", "Pressure at the end"];
-    part("Loads", &table(&head, &rows))
+    part("Loads", &listed(entries(&input["loads"]).iter().map(row)))
 }
 
 fn motions(input: &Value) -> String {
@@ -269,35 +192,18 @@ pub fn bolt_name(bolt: &Value, k: usize) -> Cell {
 }
 
 fn bolts(input: &Value) -> String {
-    let row = |(k, bolt): (usize, &Value)| -> Vec<Cell> {
+    let row = |(k, bolt): (usize, &Value)| {
         let grouted = if text(&bolt["anchorage"]) == "grouted" { "grouted" } else { "at its ends" };
-        vec![
-            bolt_name(bolt, k),
-            plain(&bolt["points"][0][0], "", Digits::Three).into(),
-            plain(&bolt["points"][0][1], "", Digits::Three).into(),
-            length(&bolt["length"], Digits::Three).into(),
-            grouted.into(),
-            length(&bolt["spacing"], Typed).into(),
-            steel_area(&bolt["area"]).into(),
-            nonzero(&bolt["pretension"], |value| prefixed(value, "N", Typed)),
-            prefixed(&bolt["yield_force"], "N", Typed).into(),
-            text_or_none(&bolt["support"]),
-        ]
+        let place = [
+            ("Bolt", bolt_name(bolt, k)),
+            ("Head x (m)", plain(&bolt["points"][0][0], "", Digits::Three).into()),
+            ("Head y (m)", plain(&bolt["points"][0][1], "", Digits::Three).into()),
+            ("Length", length(&bolt["length"], Digits::Three).into()),
+            ("Anchored", grouted.into()),
+        ];
+        [place.to_vec(), keys(Bolt::KEYS, bolt), vec![("Support", text_or_none(&bolt["support"]))]].concat()
     };
-    let rows: Vec<Vec<Cell>> = entries(&input["bolts"]).iter().enumerate().map(row).collect();
-    let head = [
-        "Bolt",
-        "Head x (m)",
-        "Head y (m)",
-        "Length",
-        "Anchored",
-        "Spacing out of plane",
-        "Section of a bar",
-        "Pretension",
-        "Yield force",
-        "Support",
-    ];
-    table(&head, &rows)
+    listed(entries(&input["bolts"]).iter().enumerate().map(row))
 }
 
 fn stages(input: &Value) -> String {

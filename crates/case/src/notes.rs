@@ -1,0 +1,50 @@
+//! Notes of a case that act on nothing: cover of the report, description of an FMU.
+
+use crate::keys::keys;
+
+keys! {
+    /// Project that the report of `enmm report` names; nothing of this acts on the model, or on what is stored of it.
+    #[derive(Eq)]
+    pub default struct ReportNotes {
+        /// Name of the project.
+        pub project: Option<String>,
+        /// Who made the analysis: name and organisation.
+        pub author: Option<String>,
+        /// Who ordered it.
+        pub client: Option<String>,
+        /// Date of the report, as it is to be printed.
+        pub date: Option<String>,
+        /// Number of the report or of its revision.
+        pub number: Option<String>,
+        /// Text below these lines.
+        pub remarks: Option<String>,
+    }
+}
+
+impl ReportNotes {
+    /// The keys and their values.
+    pub fn entries(&self) -> [(&'static str, Option<&str>); 6] {
+        let Self { project, author, client, date, number, remarks } = self;
+        [
+            ("project", project.as_deref()),
+            ("author", author.as_deref()),
+            ("client", client.as_deref()),
+            ("date", date.as_deref()),
+            ("number", number.as_deref()),
+            ("remarks", remarks.as_deref()),
+        ]
+    }
+}
+
+keys! {
+    /// Whose the case is, as the description of an FMU says it; nothing of this acts on the model.
+    #[derive(Eq)]
+    pub default struct FmuNotes {
+        /// Who wrote the case: name and organisation.
+        pub author: Option<String>,
+        /// Notice of copyright of the case.
+        pub copyright: Option<String>,
+        /// Terms of use of the case.
+        pub license: Option<String>,
+    }
+}
