@@ -117,6 +117,11 @@ impl JointLaw {
         self.tension_energy.is_some() || self.shear_energy.is_some()
     }
 
+    /// Whether its strength is a curve over the normal stress, and not the line of Mohr and Coulomb.
+    pub fn is_curved(&self) -> bool {
+        self.kind != JointLawKind::MohrCoulomb
+    }
+
     /// A Mohr–Coulomb joint with friction (degrees) alone.
     pub fn frictional(friction_deg: f64) -> Self {
         Self { friction_deg, ..Self::default() }

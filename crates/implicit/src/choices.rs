@@ -3,7 +3,7 @@
 use enmm::geometry::polygon;
 use enmm::internals::cover::Covers;
 use enmm::internals::mechanics::Elasticity;
-use enmm::model::case::{Case, Invalid, JointLawKind, Newmark};
+use enmm::model::case::{Case, Invalid, Newmark};
 
 use super::consistent::element_mass;
 
@@ -40,7 +40,7 @@ pub fn refusal(case: &Case) -> Option<Invalid> {
 fn unknown(case: &Case) -> Option<String> {
     let table = |name: &str, present: bool| present.then(|| format!("[[{name}]]"));
     let yields = case.rocks.iter().find(|(_, rock)| rock.yields());
-    let closing = case.joint_laws.iter().find(|(_, law)| law.kind == JointLawKind::BartonBandis);
+    let closing = case.joint_laws.iter().find(|(_, law)| law.is_curved());
     table("quiet", !case.quiets.is_empty())
         .or_else(|| table("free_field", !case.free_fields.is_empty()))
         .or_else(|| table("bolt", !case.bolts.is_empty()))

@@ -3,7 +3,7 @@
 use enmm::geometry::ends::EndChange;
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
-use enmm::model::case::{Anchorage, Axes, JointLaw, JointLawKind, Load, LoadKind, Port, Rock, Side, dip_in_section};
+use enmm::model::case::{Anchorage, Axes, JointLaw, Load, LoadKind, Port, Rock, Side, dip_in_section};
 use enmm::model::tables::EdgeId;
 use enmm_observe::{SupportKind, bolts, supports, water_surface};
 
@@ -201,7 +201,7 @@ fn rock_values(rock: &Rock) -> String {
 fn law_values(law: &JointLaw) -> String {
     let pascals = |name: &str, value: f64| (value != 0.0).then(|| format!("{name} {}", si_text(value, "Pa")));
     let angle = |name: &str, value: f64| format!("{name} {}°", number_text(value));
-    if law.kind == JointLawKind::BartonBandis {
+    if law.is_curved() {
         let jrc = law.jrc.map(|jrc| format!("JRC {}", number_text(jrc)));
         let jcs = law.jcs.and_then(|jcs| pascals("JCS", jcs));
         return std::iter::once(angle("φr", law.friction_deg)).chain(jrc).chain(jcs).collect::<Vec<_>>().join(", ");

@@ -4,7 +4,7 @@ use super::checks::{Names, region, unique};
 use super::{joints, ports};
 use crate::key::{Check, Key, fail};
 use crate::keys::{Range, Rule};
-use crate::{Case, JointLaw, JointLawKind, LawChange, LawSwitch, Stage, StageKind};
+use crate::{Case, JointLaw, LawChange, LawSwitch, Stage, StageKind};
 
 const RAMP: Rule = Stage::rule("ramp");
 
@@ -71,7 +71,7 @@ fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {
     for (i, change) in stage.law_changes.iter().enumerate() {
         let key = key.field("law").index(i);
         validate_change(&key, change, laws)?;
-        if case.joint_laws.get(&change.law).is_some_and(|law| law.kind == JointLawKind::BartonBandis) {
+        if case.joint_laws.get(&change.law).is_some_and(JointLaw::is_curved) {
             joints::validate_rough_change(&key, change)?;
         }
         if case.joint_laws.get(&change.law).is_some_and(JointLaw::softens) {

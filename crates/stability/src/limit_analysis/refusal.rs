@@ -2,7 +2,7 @@
 
 use enmm::model::Simulation;
 use enmm::model::case::key::Key;
-use enmm::model::case::{Axes, Case, Invalid, JointLawKind, LoadKind, Plane, Port, Solver, StageKind, Support};
+use enmm::model::case::{Axes, Case, Invalid, LoadKind, Plane, Port, Solver, StageKind, Support};
 
 use crate::{left_out_stages, with_support_forces};
 
@@ -103,9 +103,12 @@ fn refuse_motion(case: &Case) -> Result<(), Invalid> {
 
 /// Laws whose friction is no straight line.
 fn refuse_curves(case: &Case) -> Result<(), Invalid> {
-    if let Some((name, _)) = case.joint_laws.iter().find(|(_, law)| law.kind == JointLawKind::BartonBandis) {
-        let message = "is \"barton_bandis\", whose friction falls with the normal stress, but limit analysis takes \
-                       straight lines: use \"mohr_coulomb\" with friction and cohesion for the stress of the slope";
+    if let Some((name, law)) = case.joint_laws.iter().find(|(_, law)| law.is_curved()) {
+        let message = format!(
+            "is {:?}, whose friction falls with the normal stress, but limit analysis takes straight lines: use \
+             \"mohr_coulomb\" with friction and cohesion for the stress of the slope",
+            law.kind.name()
+        );
         return Err(refused(Key::root().field("joint_law").field(name).field("kind"), message));
     }
     Ok(())
