@@ -6,73 +6,49 @@ use enmm_fmi::table::Type;
 use crate::types::{Boolean, Component, Integer, Real, Status, Text, ValueReference, call};
 use enmm_fmi::raw::{self, MISSING};
 
-/// # Safety
-/// Pointers are as FMI 2 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetReal(
-    c: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut Real,
-) -> Status {
-    // SAFETY: the importer gives `n` references and room for `n` values.
-    unsafe { get_as((c, "fmi2GetReal", Type::Real), (references, n), values, |number| number) }
-}
-
-/// Reads variables of a type; `of` makes a value of a number.
-///
-/// # Safety
-/// The importer gives `n` references and room for `n` values.
-unsafe fn get_as<T>(
-    (c, name, kind): (Component, &str, Type),
-    (references, n): (*const ValueReference, usize),
-    values: *mut T,
-    of: fn(f64) -> T,
-) -> Status {
-    call(c, name, |instance| {
-        // SAFETY: by the contract of this function.
-        match unsafe { (raw::slice(references, n), raw::room(values, n)) } {
-            (Some(references), Some(values)) => {
-                let status = instance.expects(Call::Get, references, kind, n);
-                if status != Status::Ok {
-                    return status;
-                }
-                let mut numbers = vec![0.0; n];
-                let status = instance.get(references, kind, &mut numbers);
-                if status == Status::Ok {
-                    raw::fill(values, numbers.into_iter().map(of));
-                }
-                status
-            }
-            _ => instance.refuse(MISSING),
+/// Getters and setters of a type: its values, those as bytes or numbers that any bits may be, its kind, and how a value
+/// becomes a number and a number a value.
+macro_rules! accessors {
+    ($($get:ident $set:ident: $value:ty as $plain:ty, $kind:ident, $of:expr, $number:expr;)*) => {$(
+        /// # Safety
+        /// Pointers are as FMI 2 states.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            instance: Component,
+            references: *const ValueReference,
+            n: usize,
+            values: *mut $value,
+        ) -> Status {
+            call(instance, stringify!($get), |instance| {
+                let room = (values.cast::<$plain>(), n);
+                // SAFETY: the importer gives `n` references and room for `n` values.
+                unsafe { raw::get(instance, Type::$kind, (references, n), room, $of) }
+            })
         }
-    })
+
+        /// # Safety
+        /// Pointers are as FMI 2 states.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            instance: Component,
+            references: *const ValueReference,
+            n: usize,
+            values: *const $value,
+        ) -> Status {
+            call(instance, stringify!($set), |instance| {
+                let values = (values.cast::<$plain>(), n);
+                // SAFETY: the importer gives `n` references and `n` values.
+                unsafe { raw::set(instance, Type::$kind, (references, n), values, $number) }
+            })
+        }
+    )*};
 }
 
-/// # Safety
-/// Pointers are as FMI 2 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetInteger(
-    c: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut Integer,
-) -> Status {
-    // SAFETY: the importer gives `n` references and room for `n` values.
-    unsafe { get_as((c, "fmi2GetInteger", Type::Integer), (references, n), values, |number| number as Integer) }
-}
-
-/// # Safety
-/// Pointers are as FMI 2 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetBoolean(
-    c: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut Boolean,
-) -> Status {
-    // SAFETY: the importer gives `n` references and room for `n` values.
-    unsafe { get_as((c, "fmi2GetBoolean", Type::Boolean), (references, n), values, |number| number as Boolean) }
+accessors! {
+    fmi2GetReal fmi2SetReal: Real as Real, Real, |number| number, |value| value;
+    fmi2GetInteger fmi2SetInteger: Integer as Integer, Integer, |number| number as Integer, f64::from;
+    fmi2GetBoolean fmi2SetBoolean: Boolean as Boolean, Boolean,
+        |number| number as Boolean, |value| f64::from(u8::from(value != 0));
 }
 
 /// There are no variables of type String.
@@ -91,76 +67,6 @@ pub extern "C" fn fmi2GetString(
     _values: *mut Text,
 ) -> Status {
     no_strings(c, "fmi2GetString", Call::Get, n)
-}
-
-/// # Safety
-/// Pointers are as FMI 2 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetReal(
-    c: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *const Real,
-) -> Status {
-    call(c, "fmi2SetReal", |instance| {
-        // SAFETY: the importer gives `n` references and `n` values.
-        match unsafe { (raw::slice(references, n), raw::slice(values, n)) } {
-            (Some(references), Some(values)) => instance.set(references, Type::Real, values),
-            _ => instance.refuse(MISSING),
-        }
-    })
-}
-
-/// Sets variables whose values are whole numbers.
-///
-/// # Safety
-/// The importer gives `n` references and `n` values.
-unsafe fn set_whole(
-    c: Component,
-    name: &str,
-    (references, n): (*const ValueReference, usize),
-    values: *const Integer,
-    kind: Type,
-) -> Status {
-    let number = |value: &Integer| match kind {
-        Type::Boolean => f64::from(u8::from(*value != 0)),
-        _ => f64::from(*value),
-    };
-    call(c, name, |instance| {
-        // SAFETY: by the contract of this function.
-        match unsafe { (raw::slice(references, n), raw::slice(values, n)) } {
-            (Some(references), Some(values)) => {
-                instance.set(references, kind, &values.iter().map(number).collect::<Vec<_>>())
-            }
-            _ => instance.refuse(MISSING),
-        }
-    })
-}
-
-/// # Safety
-/// Pointers are as FMI 2 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetInteger(
-    c: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *const Integer,
-) -> Status {
-    // SAFETY: the importer gives `n` references and `n` values.
-    unsafe { set_whole(c, "fmi2SetInteger", (references, n), values, Type::Integer) }
-}
-
-/// # Safety
-/// Pointers are as FMI 2 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetBoolean(
-    c: Component,
-    references: *const ValueReference,
-    n: usize,
-    values: *const Boolean,
-) -> Status {
-    // SAFETY: the importer gives `n` references and `n` values.
-    unsafe { set_whole(c, "fmi2SetBoolean", (references, n), values, Type::Boolean) }
 }
 
 #[unsafe(no_mangle)]

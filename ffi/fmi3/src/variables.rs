@@ -6,156 +6,51 @@ use enmm_fmi::table::Type;
 use crate::types::{Binary, InstancePointer, Status, Text, ValueReference, call};
 use enmm_fmi::raw::{self, MISSING};
 
-/// # Safety
-/// Pointers are as FMI 3 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetFloat64(
-    instance: InstancePointer,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut f64,
-    n_values: usize,
-) -> Status {
-    let what = (instance, "fmi3GetFloat64", Type::Real);
-    // SAFETY: the importer gives `n` references and room for `n_values` values.
-    unsafe { get_as(what, (references, n), (values, n_values), |number| number) }
-}
-
-/// # Safety
-/// Pointers are as FMI 3 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetFloat64(
-    instance: InstancePointer,
-    references: *const ValueReference,
-    n: usize,
-    values: *const f64,
-    n_values: usize,
-) -> Status {
-    call(instance, "fmi3SetFloat64", |instance| {
-        // SAFETY: the importer gives `n` references and `n_values` values.
-        match unsafe { (raw::slice(references, n), raw::slice(values, n_values)) } {
-            (Some(references), Some(values)) => instance.set(references, Type::Real, values),
-            _ => instance.refuse(MISSING),
+/// Getters and setters of a type: its values, those as bytes or numbers that any bits may be, its kind, and how a value
+/// becomes a number and a number a value.
+macro_rules! accessors {
+    ($($get:ident $set:ident: $value:ty as $plain:ty, $kind:ident, $of:expr, $number:expr;)*) => {$(
+        /// # Safety
+        /// Pointers are as FMI 3 states.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            instance: InstancePointer,
+            references: *const ValueReference,
+            n: usize,
+            values: *mut $value,
+            n_values: usize,
+        ) -> Status {
+            call(instance, stringify!($get), |instance| {
+                let room = (values.cast::<$plain>(), n_values);
+                // SAFETY: the importer gives `n` references and room for `n_values` values.
+                unsafe { raw::get(instance, Type::$kind, (references, n), room, $of) }
+            })
         }
-    })
-}
 
-/// Reads variables of a type; `of` makes a value of a number.
-///
-/// # Safety
-/// The importer gives `n` references and room for `n_values` values.
-unsafe fn get_as<T>(
-    (instance, name, kind): (InstancePointer, &str, Type),
-    (references, n): (*const ValueReference, usize),
-    (values, n_values): (*mut T, usize),
-    of: fn(f64) -> T,
-) -> Status {
-    call(instance, name, |instance| {
-        // SAFETY: by the contract of this function.
-        match unsafe { (raw::slice(references, n), raw::room(values, n_values)) } {
-            (Some(references), Some(values)) => {
-                let status = instance.expects(Call::Get, references, kind, n_values);
-                if status != Status::Ok {
-                    return status;
-                }
-                let mut numbers = vec![0.0; n_values];
-                let status = instance.get(references, kind, &mut numbers);
-                if status == Status::Ok {
-                    raw::fill(values, numbers.into_iter().map(of));
-                }
-                status
-            }
-            _ => instance.refuse(MISSING),
+        /// # Safety
+        /// Pointers are as FMI 3 states.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            instance: InstancePointer,
+            references: *const ValueReference,
+            n: usize,
+            values: *const $value,
+            n_values: usize,
+        ) -> Status {
+            call(instance, stringify!($set), |instance| {
+                let values = (values.cast::<$plain>(), n_values);
+                // SAFETY: the importer gives `n` references and `n_values` values.
+                unsafe { raw::set(instance, Type::$kind, (references, n), values, $number) }
+            })
         }
-    })
+    )*};
 }
 
-/// Sets variables of a type other than Float64; `number` makes a number of a value.
-///
-/// # Safety
-/// The importer gives `n` references and `n_values` values.
-unsafe fn set_as<T: Copy>(
-    (instance, name, kind): (InstancePointer, &str, Type),
-    (references, n): (*const ValueReference, usize),
-    (values, n_values): (*const T, usize),
-    number: fn(T) -> f64,
-) -> Status {
-    call(instance, name, |instance| {
-        // SAFETY: by the contract of this function.
-        match unsafe { (raw::slice(references, n), raw::slice(values, n_values)) } {
-            (Some(references), Some(values)) => {
-                let status = instance.expects(Call::Set, references, kind, n_values);
-                if status != Status::Ok {
-                    return status;
-                }
-                let numbers: Vec<f64> = values.iter().map(|&value| number(value)).collect();
-                instance.set(references, kind, &numbers)
-            }
-            _ => instance.refuse(MISSING),
-        }
-    })
-}
-
-/// # Safety
-/// Pointers are as FMI 3 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetInt32(
-    instance: InstancePointer,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut i32,
-    n_values: usize,
-) -> Status {
-    let what = (instance, "fmi3GetInt32", Type::Integer);
-    // SAFETY: the importer gives `n` references and room for `n_values` values.
-    unsafe { get_as(what, (references, n), (values, n_values), |number| number as i32) }
-}
-
-/// # Safety
-/// Pointers are as FMI 3 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetInt32(
-    instance: InstancePointer,
-    references: *const ValueReference,
-    n: usize,
-    values: *const i32,
-    n_values: usize,
-) -> Status {
-    let what = (instance, "fmi3SetInt32", Type::Integer);
-    // SAFETY: the importer gives `n` references and `n_values` values.
-    unsafe { set_as(what, (references, n), (values, n_values), f64::from) }
-}
-
-/// # Safety
-/// Pointers are as FMI 3 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetBoolean(
-    instance: InstancePointer,
-    references: *const ValueReference,
-    n: usize,
-    values: *mut bool,
-    n_values: usize,
-) -> Status {
-    let what = (instance, "fmi3GetBoolean", Type::Boolean);
-    // SAFETY: the importer gives `n` references and room for `n_values` values, each a byte.
-    unsafe { get_as(what, (references, n), (values.cast::<u8>(), n_values), |number| u8::from(number != 0.0)) }
-}
-
-/// A byte of the importer need not be a `bool` of Rust.
-/// # Safety
-/// Pointers are as FMI 3 states.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetBoolean(
-    instance: InstancePointer,
-    references: *const ValueReference,
-    n: usize,
-    values: *const bool,
-    n_values: usize,
-) -> Status {
-    let what = (instance, "fmi3SetBoolean", Type::Boolean);
-    let number = |byte: u8| f64::from(u8::from(byte != 0));
-    // SAFETY: the importer gives `n` references and `n_values` values, each a byte.
-    unsafe { set_as(what, (references, n), (values.cast::<u8>(), n_values), number) }
+accessors! {
+    fmi3GetFloat64 fmi3SetFloat64: f64 as f64, Real, |number| number, |value| value;
+    fmi3GetInt32 fmi3SetInt32: i32 as i32, Integer, |number| number as i32, f64::from;
+    // A byte of the importer need not be a `bool` of Rust.
+    fmi3GetBoolean fmi3SetBoolean: bool as u8, Boolean, |number| u8::from(number != 0.0), |byte| f64::from(byte.min(1));
 }
 
 /// The bytes belong to the instance and stay until the next call of this function.

@@ -1,7 +1,10 @@
 //! Pointers of the importer, which may be missing: all `unsafe` of this crate.
 #![deny(unsafe_op_in_unsafe_fn)]
 
+mod accessors;
 pub mod states;
+
+pub use accessors::{get, set};
 
 use std::ffi::{CStr, CString, c_char};
 use std::mem::MaybeUninit;
