@@ -139,7 +139,10 @@ fn closing_line(record: &Record) -> String {
 fn list(problems: &[&Problem], json: bool) -> String {
     if json {
         let one = |p: &&Problem| {
-            let parameter = |p: &Parameter| json!({ "name": p.name, "unit": p.unit, "default": p.default, "range": p.range, "doc": p.doc });
+            let parameter = |parameter: &Parameter| {
+                let Parameter { name, unit, default, range, doc } = parameter;
+                json!({ "name": name, "unit": unit, "default": default, "range": range, "doc": doc })
+            };
             let parameters: Vec<_> = p.parameters.iter().map(parameter).collect();
             json!({ "id": p.id, "title": p.title, "source": p.source, "quick": p.quick,
                                 "implicit": p.implicit, "parameters": parameters })

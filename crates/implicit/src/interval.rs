@@ -121,8 +121,8 @@ fn taken(workspace: &mut Workspace) -> Box<ImplicitBuffers> {
 impl ImplicitStep<'_> {
     fn inertia<'a>(&mut self, implicit: &'a Implicit, dt: f64) -> Inertia<'a> {
         let (factor, end, rests) = match (self.regime, implicit.rule) {
-            // That of a step from rest over a time that grows while sub-steps settle easily and is cut when one does not
-            // (Eq. 72).
+            // That of a step from rest over a time that grows while sub-steps settle easily, and is cut when one does
+            // not (Eq. 72).
             (Regime::Static { .. }, _) => {
                 let stretch = &mut self.state.static_stretch;
                 if *stretch == 0.0 {

@@ -53,8 +53,8 @@ struct Part {
 /// When cargo cannot name the crates, or the sources or the licence of one are missing.
 pub fn of(repository: Option<&Path>) -> Result<Parts, String> {
     let Some(root) = repository else {
-        let licenses = "enmm may be used under MIT or Apache-2.0. This build was not made in the repository of enmm, so\n\
-                        the licences of the Rust crates in its libraries and its program are not listed here.\n";
+        let licenses = "enmm may be used under MIT or Apache-2.0. This build was not made in the repository of enmm, \
+                        so\nthe licences of the Rust crates in its libraries and its program are not listed here.\n";
         return Ok(Parts { list: list(&[], &BTreeMap::new())?, licenses: licenses.to_owned() });
     };
     let metadata = metadata(root)?;

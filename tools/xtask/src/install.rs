@@ -38,12 +38,11 @@ pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
 const PKG_CONFIG: &str = include_str!("install/enmm.pc");
 /// The targets for CMake.
 const CMAKE: &str = include_str!("install/enmmConfig.cmake");
-
 /// The version file for CMake.
 const CMAKE_VERSION: &str = include_str!("install/enmmConfigVersion.cmake");
 
-/// A file with the version, its series (the same major version and, before 1.0, the same minor one) and the libraries of
-/// the system, which a mark parts.
+/// A file with the version, its series (the same major version and, before 1.0, the same minor one) and the libraries
+/// of the system, which a mark parts.
 fn filled(text: &str, version: &str, mark: &str) -> String {
     let mut parts = version.split('.');
     let (major, minor) = (parts.next().unwrap_or("0"), parts.next().unwrap_or("0"));

@@ -16,8 +16,8 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Least of unknown 0 where `right` minus `a` times the unknowns lies in the cones; where there are `factors`, least of
-    /// half the sum of the squares of the unknowns, each times its factor.
+    /// Least of unknown 0 where `right` minus `a` times the unknowns lies in the cones; where there are `factors`, that
+    /// of half the sum of the squares of the unknowns, each times its factor.
     ///
     /// # Errors
     /// The status with which the solver gave up.

@@ -27,8 +27,8 @@ const BYTES_PER_PAIR: f64 = 150.0;
 const CELLS_MAX: [f64; 2] = [1e9, u32::MAX as f64 / 3.0];
 /// Most pieces of traces that are cut for a first look.
 const SAMPLE: usize = 1100;
-/// How many times more than the limit a first look must find to refuse a case: where a bundle of joints is drawn into one
-/// line, a part of it may have some more sides near each other than all (measured: 1.07 times).
+/// How many times more than the limit a first look must find to refuse a case: where a bundle of joints is drawn into
+/// one line, a part of it may have some more sides near each other than all (measured: 1.07 times).
 const FLOOD: f64 = 1.25;
 /// Limit over the estimate at a spacing that the remedy names, so that it suffices.
 const ROOM: f64 = 2.0;

@@ -26,8 +26,8 @@ pub struct Strong {
     pub change: Sum,
 }
 
-/// Least of unknown 0 under conditions on all unknowns: rows whose sums are zero, not negative, or parts of second-order
-/// cones.
+/// Least of unknown 0 under conditions on all unknowns: rows whose sums are zero, not negative, or parts of
+/// second-order cones.
 #[derive(Debug, Clone, Default)]
 pub struct Conic {
     columns: usize,
