@@ -14,9 +14,7 @@ words! {
         /// Along its whole length: at each joint that it crosses a short free length bridges the joint.
         Grouted = "grouted",
     }
-}
 
-words! {
     /// Force of a bolt in the factor of safety and in limit analysis.
     pub enum Support {
         /// Its pretension, whatever the rock does.

@@ -34,9 +34,7 @@ words! {
         /// Towards greater x.
         Right = "right",
     }
-}
 
-words! {
     /// How spacings or trace lengths scatter about their mean.
     #[derive(Default)]
     pub enum Distribution {

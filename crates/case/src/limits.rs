@@ -5,7 +5,7 @@
 pub const ACCELERATION_MAX: f64 = 1e4;
 /// Magnitude of the velocity of a base or a wave (m/s).
 pub const VELOCITY_MAX: f64 = 1e4;
-/// Magnitude of a height (m).
+/// Magnitude of a height or another coordinate (m): beyond it a double resolves less than a tenth of a micrometre.
 pub const LEVEL_MAX: f64 = 1e9;
 /// Factor on the strength of joints.
 pub const FACTOR_MAX: f64 = 1e6;

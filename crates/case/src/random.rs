@@ -121,9 +121,7 @@ words! {
         /// Each value takes every one of as many equally probable intervals as there are samples once.
         LatinHypercube = "latin_hypercube",
     }
-}
 
-words! {
     /// Result that is computed for a sample.
     #[derive(Default)]
     pub enum EnsembleOutput {

@@ -39,9 +39,7 @@ words! {
         /// The motion of a free surface of the same rock, which is twice the wave.
         Outcrop = "outcrop",
     }
-}
 
-words! {
     /// Correction of a record that does not end at rest: a polynomial is taken from its acceleration.
     pub enum Baseline {
         /// Nothing is taken.
@@ -51,9 +49,7 @@ words! {
         /// A straight line, by which velocity and displacement end at 0.
         Linear = "linear",
     }
-}
 
-words! {
     /// Unit of the times of a record.
     pub enum TimeUnit {
         /// Seconds.

@@ -14,9 +14,7 @@ words! {
         /// Global stiffness, Newmark's rule, open–close iteration with refactorisation: the classical method.
         Implicit = "implicit",
     }
-}
 
-words! {
     /// What becomes of corner contacts: corners of blocks that meet, in a point or over a short length, a side which
     /// rises in front of them.
     pub enum CornerContacts {
@@ -25,9 +23,7 @@ words! {
         /// They carry none where it would be more than the rock over their length bears.
         Break = "break",
     }
-}
 
-words! {
     /// Newmark's rule of the implicit integrator.
     #[derive(Default)]
     pub enum Newmark {

@@ -79,9 +79,12 @@ macro_rules! keys {
 }
 pub(crate) use keys;
 
-/// Defines the words that the value of a key may be.
+/// Defines the words that values of keys may be, one list for each.
 macro_rules! words {
-    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$word_meta:meta])* $word:ident = $text:literal),* $(,)? }) => {
+    ($(
+        $(#[$meta:meta])*
+        $vis:vis enum $name:ident { $($(#[$word_meta:meta])* $word:ident = $text:literal),* $(,)? }
+    )*) => {$(
         #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         $(#[$meta])*
@@ -97,7 +100,7 @@ macro_rules! words {
                 }
             }
         }
-    };
+    )*};
 }
 pub(crate) use words;
 

@@ -2,10 +2,7 @@
 
 use super::unit::{DEGREE, DENSITY, METRE, NEWTON_PER_METRE, NUMBER, PASCAL, SECOND};
 use super::{Range, Rule};
-use crate::limits::VALUE_MAX;
-
-/// Largest coordinate (m): beyond it a double resolves less than a tenth of a micrometre.
-const COORDINATE_MAX: f64 = 1e9;
+use crate::limits::{LEVEL_MAX, VALUE_MAX};
 
 /// Coordinates of points.
 pub const PLACE: Rule = HEIGHT.columns([("x", "m"), ("y", "m")]).hint("correct it or move the origin");
@@ -15,11 +12,11 @@ pub const ROWS: Rule = Range::within(1e12)
     .columns([("time", "s"), ("value", "")])
     .hint("the first value of a row is a time, the second one a factor");
 /// Heights in the section.
-pub const HEIGHT: Rule = Range::within(COORDINATE_MAX).of(METRE);
+pub const HEIGHT: Rule = Range::within(LEVEL_MAX).of(METRE);
 /// Lengths that are greater than 0.
-pub const LENGTH: Rule = Range::above(0.0).to(COORDINATE_MAX).of(METRE);
+pub const LENGTH: Rule = Range::above(0.0).to(LEVEL_MAX).of(METRE);
 /// Deviations of lengths.
-pub const DEVIATION: Rule = Range::from(0.0).to(COORDINATE_MAX).of(METRE);
+pub const DEVIATION: Rule = Range::from(0.0).to(LEVEL_MAX).of(METRE);
 /// Friction and dilation angles.
 pub const ANGLE: Rule = Range::from(0.0).below(90.0).of(DEGREE);
 /// Directions in the section or on the map.
