@@ -403,12 +403,14 @@ fn constant_problem(row: &Constant, files: &[File]) -> Option<String> {
     (!fits).then(|| format!("{at}: `{name}` is not {value} in {file}"))
 }
 
-/// Value in `const NAME: … = VALUE;`, or of a key with a default, `pub NAME: … = VALUE => …`.
+/// Value in `const NAME: … = VALUE;`, `NAME: VALUE,` or, of a key of a case, `pub NAME: … = VALUE => …`.
 fn value_of<'a>(line: &'a str, name: &str) -> Option<&'a str> {
     match line.split_once("const ") {
         Some((_, rest)) => rest.strip_prefix(name)?.strip_prefix(": ")?.split_once(" = ")?.1.strip_suffix(';'),
         None => {
-            line.strip_prefix("pub ")?.strip_prefix(name)?.strip_prefix(": ")?.split_once(" = ")?.1.split(" =>").next()
+            let rest = line.trim_start_matches("pub ").strip_prefix(name)?.strip_prefix(": ")?;
+            let value = rest.split_once(" = ").map_or(rest, |(_, value)| value);
+            Some(value.split(" =>").next()?.trim_end_matches(','))
         }
     }
 }
@@ -976,7 +978,7 @@ fn riddles_are_counted() {
 #[test]
 fn constants_rule_is_seen_failing() {
     let code = "pub(super) const A: f64 = 2.5e-3;\nconst W: [f64; 2] = [2.0, 8_000.0];\n\
-        \x20   pub theta: f64 = 4.0 => SHARE,\n    pub a_max: f64 = 5.0,\n\
+        \x20   pub theta: f64 = 4.0 => SHARE,\n    a_max: 5.0,\n\
         const M: f64 = 70.0 * std::f64::consts::PI / 180.0;";
     let wrong = |name: &str, value: &str| {
         let table = format!(
@@ -986,7 +988,7 @@ fn constants_rule_is_seen_failing() {
         assert_eq!(rows.len(), 1);
         constant_problem(&rows[0], &[file("src/a.rs", code)]).is_some()
     };
-    for (name, value) in [("A", "0.0025 $h$"), ("W", "2, 8000"), ("theta", "4"), ("M", "70°")] {
+    for (name, value) in [("A", "0.0025 $h$"), ("W", "2, 8000"), ("theta", "4"), ("a_max", "5"), ("M", "70°")] {
         assert!(!wrong(name, value), "{name}");
     }
     for (name, value) in [("A", "0.0026"), ("W", "2"), ("a", "5"), ("theta", "four")] {
