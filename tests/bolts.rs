@@ -8,6 +8,7 @@ use enmm::model::Simulation;
 const G: f64 = 9.81;
 const AREA: f64 = 2.0 * 0.8;
 const DENSITY: f64 = 2500.0;
+const WEIGHT: f64 = AREA * DENSITY * G;
 
 /// A block of 2 m × 0.8 m that hangs below a held slab, from which a smooth joint parts it, and bolts.
 fn roof(bolts: &str, stages: &str) -> String {
@@ -24,6 +25,7 @@ fn bolt(x: f64, young: f64, more: &str) -> String {
 }
 
 const SETTLE: &str = "[[stage]]\nname = \"settle\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-7\n";
+const DROP: &str = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\ndamping = 0.0\n";
 
 fn forces(simulation: &Simulation) -> Vec<f64> {
     simulation.state().bolts.iter().map(|b| b.force).collect()
@@ -40,9 +42,8 @@ fn bars_share_the_weight_by_the_lever() {
     let bars = bolt(0.5, 1e10, "") + &bolt(1.25, 2e10, "spacing = 2.0");
     let mut sim = simulation(&roof(&bars, SETTLE));
     let report = run_stage(&mut sim);
-    let weight = AREA * DENSITY * G;
     // Moments about the middle x = 1, for the small turn that leaves both bars straight.
-    let exact = [weight * 0.25 / 0.75, weight * 0.5 / 0.75];
+    let exact = [WEIGHT * 0.25 / 0.75, WEIGHT * 0.5 / 0.75];
     for (found, exact) in forces(&sim).iter().zip(exact) {
         assert!((found / exact - 1.0).abs() < 5e-3, "{found} of {exact}");
     }
@@ -57,10 +58,8 @@ fn bars_share_the_weight_by_the_lever() {
 /// Stiffness and yield are those of the bar: rock strains 1e-5 of that, so 1 %.
 #[test]
 fn a_bar_that_yields_stops_the_block_after_its_plastic_way() {
-    let weight = AREA * DENSITY * G;
-    let (limit, stiffness) = (1.3 * weight, 1e-3 * 1e10);
-    let stage = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\ndamping = 0.0\n";
-    let text = roof(&bolt(1.0, 1e10, &format!("yield_force = {limit:e}")), stage);
+    let (limit, stiffness) = (1.3 * WEIGHT, 1e-3 * 1e10);
+    let text = roof(&bolt(1.0, 1e10, &format!("yield_force = {limit:e}")), DROP);
     let mut sim = simulation(&text);
     let mut deepest = 0.0f64;
     let mut report = Default::default();
@@ -68,7 +67,7 @@ fn a_bar_that_yields_stops_the_block_after_its_plastic_way() {
         report = advance(&mut sim, 20);
         deepest = deepest.max(hang(&sim));
     }
-    let exact = limit * limit / (2.0 * stiffness * (limit - weight));
+    let exact = limit * limit / (2.0 * stiffness * (limit - WEIGHT));
     println!("deepest {deepest} of {exact}; {:?}", sim.state().bolts);
     assert!((deepest / exact - 1.0).abs() < 1e-2, "{deepest} of {exact}");
     let bar = sim.state().bolts[0];
@@ -82,9 +81,7 @@ fn a_bar_that_yields_stops_the_block_after_its_plastic_way() {
 /// The same bar breaks when its elongation passes the rupture strain on the way, and the block falls freely from then.
 #[test]
 fn a_bar_breaks_at_its_rupture_strain() {
-    let weight = AREA * DENSITY * G;
-    let stage = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\ndamping = 0.0\n";
-    let text = roof(&bolt(1.0, 1e10, &format!("yield_force = {:e}\nrupture_strain = 4e-3", 1.3 * weight)), stage);
+    let text = roof(&bolt(1.0, 1e10, &format!("yield_force = {:e}\nrupture_strain = 4e-3", 1.3 * WEIGHT)), DROP);
     let mut sim = simulation(&text);
     while !sim.state().bolts[0].broken {
         assert!(hang(&sim) < 4.1e-3, "it breaks at 4 mm");
@@ -119,7 +116,7 @@ fn grouted_bars_need_no_smaller_step_and_come_by_stage() {
     assert_eq!(forces(&sim)[1], 3e4);
     let report = run_stage(&mut sim);
     let normal: f64 = sim.contacts().iter().map(|c| c.history.normal_force).sum();
-    let exact = forces(&sim).iter().sum::<f64>() - AREA * DENSITY * G;
+    let exact = forces(&sim).iter().sum::<f64>() - WEIGHT;
     assert!((normal / exact - 1.0).abs() < 1e-3, "{normal} of {exact}");
     assert!(report.ledger.kinetic < 1e-6 && sim.at_rest(&report));
     assert_ledger(&report);
@@ -127,9 +124,8 @@ fn grouted_bars_need_no_smaller_step_and_come_by_stage() {
 
 #[test]
 fn a_saved_state_goes_on_with_the_same_bits() {
-    let weight = AREA * DENSITY * G;
     let stage = "[[stage]]\nname = \"drop\"\nkind = \"dynamic\"\nduration = 2.0\n";
-    let text = roof(&bolt(0.8, 1e10, &format!("yield_force = {:e}", 1.3 * weight)), stage);
+    let text = roof(&bolt(0.8, 1e10, &format!("yield_force = {:e}", 1.3 * WEIGHT)), stage);
     let mut sim = simulation(&text);
     advance(&mut sim, 300);
     let mut other = simulation(&text);

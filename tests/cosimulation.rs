@@ -4,14 +4,15 @@
 use std::path::Path;
 
 use crate::common::saved::Whole;
+use crate::common::{example as text_of, examples};
 use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
 use enmm::geometry::Vector;
+use enmm::model::Mechanism;
 use enmm::model::bytes::{Keeper, decode, encode};
-use enmm::model::{BlockState, Mechanism};
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 fn example(name: &str) -> LoadedCase {
-    load_case(Path::new(&format!("examples/cases/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
+    load_case(&examples().join(format!("{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn model(name: &str) -> Cosimulation {
@@ -27,8 +28,10 @@ fn run(model: &mut Cosimulation, h: f64, end: f64) {
     }
 }
 
-fn states(model: &Cosimulation) -> Vec<BlockState> {
-    model.block_states()
+/// One step until `end`.
+fn go(model: &mut Cosimulation, end: f64) {
+    let t = model.time();
+    model.do_step(t, end - t).unwrap_or_else(|e| panic!("{e}"));
 }
 
 #[test]
@@ -45,7 +48,7 @@ fn the_initial_equilibrium_ends_at_time_zero_and_equals_that_of_a_run() {
         simulation.advance(step % 10 == 0).unwrap();
     });
     simulation.next_stage().unwrap();
-    assert_eq!(simulation.block_states(), states(&model));
+    assert_eq!(simulation.block_states(), model.block_states());
 }
 
 #[test]
@@ -56,10 +59,9 @@ fn any_division_into_steps_gives_the_same_bits() {
         for h in [0.1, 0.01, 0.05 / 7.0, 0.2 / 3.0, 0.00123] {
             let mut parts = model(name);
             run(&mut parts, h, 0.2 - h);
-            let t = parts.time();
-            parts.do_step(t, 0.2 - t).unwrap();
+            go(&mut parts, 0.2);
             assert!((parts.time() - 0.2).abs() < 1e-12, "{}", parts.time());
-            assert_eq!(states(&parts), states(&whole), "{name} by steps of {h}");
+            assert_eq!(parts.block_states(), whole.block_states(), "{name} by steps of {h}");
         }
     }
 }
@@ -70,9 +72,9 @@ fn a_step_that_ends_between_grid_points_ends_exactly_there() {
     let dt = model.internal_step();
     let info = model.do_step(0.0, 10.4 * dt).unwrap();
     assert_eq!((info.steps, info.time), (11, 10.4 * dt));
-    let there = states(&model)[1].displacement;
+    let there = model.block_states()[1].displacement;
     model.set_block_force(1, Vector::new(1e3, 0.0), 0.0).unwrap();
-    assert_eq!(states(&model)[1].displacement, there, "an input moves nothing by itself");
+    assert_eq!(model.block_states()[1].displacement, there, "an input moves nothing by itself");
     let info = model.do_step(10.4 * dt, 0.2 * dt).unwrap();
     assert_eq!(info.steps, 1);
     assert!((model.time() - 10.6 * dt).abs() < 1e-15);
@@ -82,14 +84,14 @@ fn a_step_that_ends_between_grid_points_ends_exactly_there() {
 fn times_that_do_not_fit_are_refused_and_change_nothing() {
     let mut model = model("block_on_incline");
     model.do_step(0.0, 0.01).unwrap();
-    let before = states(&model);
+    let before = model.block_states();
     for (t, h) in [(0.0, 0.01), (0.02, 0.01), (f64::NAN, 0.01)] {
         assert!(matches!(model.do_step(t, h), Err(CosimulationError::Time { .. })), "{t} {h}");
     }
     for h in [0.0, -0.01, f64::NAN, f64::INFINITY, 1e300] {
         assert!(matches!(model.do_step(0.01, h), Err(CosimulationError::Value { .. })), "{h}");
     }
-    assert_eq!(states(&model), before);
+    assert_eq!(model.block_states(), before);
     model.do_step(0.01, 0.01).unwrap();
 }
 
@@ -104,11 +106,11 @@ fn a_failed_step_leaves_the_model_where_it_was() {
     let error = model.do_step(0.05, 0.05).unwrap_err();
     assert!(matches!(error, CosimulationError::Step(_)), "{error}");
     assert!((model.time() - 0.05).abs() < 1e-15);
-    assert_eq!(states(&model), states(&plain));
+    assert_eq!(model.block_states(), plain.block_states());
     model.restore(&saved).unwrap();
     run(&mut model, 0.01, 0.1);
     run(&mut plain, 0.01, 0.1);
-    assert_eq!(states(&model), states(&plain));
+    assert_eq!(model.block_states(), plain.block_states());
 }
 
 #[test]
@@ -120,13 +122,13 @@ fn saved_states_bring_back_everything_even_in_another_model_of_the_case() {
     let bytes = first.serialize(&saved).unwrap();
     first.set_water_level(18.0).unwrap();
     first.do_step(0.0503, 0.05).unwrap();
-    let after = states(&first);
+    let after = first.block_states();
 
     first.restore(&saved).unwrap();
     assert_eq!(first.inputs().water_level, 12.0);
     first.set_water_level(18.0).unwrap();
     first.do_step(0.0503, 0.05).unwrap();
-    assert_eq!(states(&first), after);
+    assert_eq!(first.block_states(), after);
 
     let mut fresh = model("coupled_slope");
     let again = fresh.deserialize(&bytes).unwrap();
@@ -134,7 +136,7 @@ fn saved_states_bring_back_everything_even_in_another_model_of_the_case() {
     fresh.restore(&again).unwrap();
     fresh.set_water_level(18.0).unwrap();
     fresh.do_step(0.0503, 0.05).unwrap();
-    assert_eq!(states(&fresh), after);
+    assert_eq!(fresh.block_states(), after);
     assert_eq!(fresh.events().collect::<Vec<_>>(), first.events().collect::<Vec<_>>());
 }
 
@@ -167,7 +169,7 @@ fn an_interval_may_be_left_early() {
     model.do_step(info.time, 0.1 - info.time).unwrap();
     let mut whole = self::model("block_on_incline");
     whole.do_step(0.0, 0.1).unwrap();
-    assert_eq!(states(&model), states(&whole));
+    assert_eq!(model.block_states(), whole.block_states());
 }
 
 #[test]
@@ -205,7 +207,7 @@ fn a_block_that_is_pulled_off_detaches() {
     model.set_block_force(1, normal * 1e5, 0.0).unwrap();
     let info = model.do_step(0.0, 0.2).unwrap();
     assert!(info.events.iter().any(|e| e.kind == EventKind::Detached && e.subject == 1), "{:?}", info.events);
-    assert!(states(&model)[1].detached);
+    assert!(model.block_states()[1].detached);
 }
 
 #[test]
@@ -221,10 +223,10 @@ fn a_linear_input_arrives_at_the_end_of_the_step_and_a_held_one_jumps() {
         model.set_block_force(0, Vector::new(1000.0, 0.0), 0.0).unwrap();
         model.set_strength_factor(0.5).unwrap();
         model.do_step(0.0, h).unwrap();
-        let v = states(&model)[0].velocity.x;
+        let v = model.block_states()[0].velocity.x;
         assert!((v - share * h).abs() < 2.0 * model.internal_step(), "{interpolation:?}: {v}");
         model.do_step(h, h).unwrap();
-        let gained = states(&model)[0].velocity.x - v;
+        let gained = model.block_states()[0].velocity.x - v;
         assert!((gained - h).abs() < 2.0 * model.internal_step(), "the value holds: {gained}");
     }
 }
@@ -260,9 +262,9 @@ fn parameters_change_what_counts_at_time_zero() {
     apply(&mut loaded.case, friction, 10f64.to_radians()).unwrap();
     let mut model = LoadedCase::of(loaded.case, "changed").unwrap().cosimulation().unwrap();
     model.start().unwrap();
-    let start = states(&model)[1].displacement;
+    let start = model.block_states()[1].displacement;
     model.do_step(0.0, 1.0).unwrap();
-    let slid = (states(&model)[1].displacement - start).norm();
+    let slid = (model.block_states()[1].displacement - start).norm();
     assert!((slid - 1.703489).abs() < 2e-4, "{slid}");
     for p in &list {
         let mut case = original.clone();
@@ -273,7 +275,7 @@ fn parameters_change_what_counts_at_time_zero() {
 
 #[test]
 fn threads_do_not_change_the_bits() {
-    let text = std::fs::read_to_string("examples/cases/fractured_slope.toml").unwrap();
+    let text = text_of("fractured_slope");
     let settle = text.find("[[stage]]").unwrap()..text.find("[[stage]]\nname = \"failure\"").unwrap();
     let loaded = parse_case(&text.replace(&text[settle], ""), "failing.toml", Path::new("")).unwrap();
     let mut serial = loaded.cosimulation().unwrap();
@@ -283,7 +285,7 @@ fn threads_do_not_change_the_bits() {
     let h = 20.0 * serial.internal_step();
     serial.do_step(0.0, h).unwrap();
     parallel.do_step(0.0, h).unwrap();
-    assert_eq!(states(&serial), states(&parallel));
+    assert_eq!(serial.block_states(), parallel.block_states());
 }
 
 /// A block of 1000 kg/m in empty space.
@@ -305,7 +307,7 @@ fn push(model: &mut Cosimulation, force: f64) {
 }
 
 fn speed(model: &Cosimulation) -> f64 {
-    states(model)[0].velocity.x
+    model.block_states()[0].velocity.x
 }
 
 #[test]
@@ -338,11 +340,11 @@ fn a_linear_input_goes_on_after_an_early_end_whatever_else_is_set() {
 fn an_interval_that_is_over_moves_nothing() {
     let mut model = model("block_on_incline");
     model.do_step(0.0, 0.0105).unwrap();
-    let (before, saved) = (states(&model), model.save());
+    let (before, saved) = (model.block_states(), model.save());
     let interval = model.begin(0.0105, 0.01).unwrap();
     let info = model.leave(interval);
     assert_eq!((info.steps, info.time, model.time()), (0, 0.0105, 0.0105), "nothing was done, nothing is lost");
-    assert_eq!(states(&model), before);
+    assert_eq!(model.block_states(), before);
 
     let mut first = model.begin(0.0105, 0.01).unwrap();
     model.advance(&mut first).unwrap();
@@ -355,39 +357,24 @@ fn an_interval_that_is_over_moves_nothing() {
     assert_eq!(model.time(), 0.0105 + 0.01);
 }
 
+/// Steps may end anywhere after an input between grid points that is held, and after a linear one has arrived.
 #[test]
-fn divisions_after_an_input_between_grid_points_give_the_same_bits() {
-    let run = |ends: &[f64]| {
-        let mut model = model("block_on_incline");
-        let dt = model.internal_step();
-        model.do_step(0.0, 3.3 * dt).unwrap();
-        model.set_block_force(1, Vector::new(2e4, 0.0), 0.0).unwrap();
-        for end in ends {
-            let t = model.time();
-            model.do_step(t, end * dt - t).unwrap();
-        }
-        states(&model)
-    };
-    let whole = run(&[40.0]);
-    assert_eq!(run(&[3.5, 3.7, 3.9, 40.0]), whole);
-    assert_eq!(run(&[3.6, 9.1, 9.2, 20.0, 40.0]), whole);
-}
-
-#[test]
-fn divisions_of_what_follows_a_linear_input_give_the_same_bits() {
-    let run = |ends: &[f64]| {
-        let mut model = model("block_on_incline");
-        model.set_interpolation(Interpolation::Linear);
-        let dt = model.internal_step();
-        model.do_step(0.0, 5.0 * dt).unwrap();
-        model.set_block_force(1, Vector::new(2e4, 0.0), 0.0).unwrap();
-        for end in [10.4].iter().chain(ends) {
-            let t = model.time();
-            model.do_step(t, end * dt - t).unwrap();
-        }
-        states(&model)
-    };
-    assert_eq!(run(&[12.0, 15.5, 15.6, 40.0]), run(&[40.0]));
+fn divisions_of_what_follows_an_input_give_the_same_bits() {
+    let held: &[&[f64]] = &[&[40.0], &[3.5, 3.7, 3.9, 40.0], &[3.6, 9.1, 9.2, 20.0, 40.0]];
+    let linear: &[&[f64]] = &[&[10.4, 40.0], &[10.4, 12.0, 15.5, 15.6, 40.0]];
+    for (interpolation, set, divisions) in [(Interpolation::Hold, 3.3, held), (Interpolation::Linear, 5.0, linear)] {
+        let ends = divisions.iter().map(|ends| {
+            let mut model = model("block_on_incline");
+            model.set_interpolation(interpolation);
+            let dt = model.internal_step();
+            go(&mut model, set * dt);
+            model.set_block_force(1, Vector::new(2e4, 0.0), 0.0).unwrap();
+            ends.iter().for_each(|end| go(&mut model, end * dt));
+            model.block_states()
+        });
+        let ends: Vec<_> = ends.collect();
+        assert!(ends.iter().all(|states| *states == ends[0]), "{interpolation:?}: {ends:?}");
+    }
 }
 
 #[test]
@@ -422,10 +409,9 @@ fn stages_of_odd_lengths_change_at_their_own_times() {
     let run = |h: f64| {
         let mut model = loaded.cosimulation().unwrap();
         run(&mut model, h, 0.1);
-        let t = model.time();
-        model.do_step(t, 0.12 - t).unwrap();
+        go(&mut model, 0.12);
         assert_eq!(model.simulation().state().stage, 3);
-        states(&model)
+        model.block_states()
     };
     let plain = run(0.01);
     assert_eq!(run(0.0123), plain);
@@ -440,16 +426,14 @@ fn an_equilibrium_that_is_not_found_leaves_the_model_as_it_was() {
     let with_force = model.save();
     assert!(matches!(model.start(), Err(CosimulationError::Step(_))));
     assert!(!model.is_started() && model.time() == 0.0);
-    assert_eq!(model.inputs(), &{
-        let mut same = self::model("block_on_incline");
-        same.restore(&with_force).unwrap();
-        same.inputs().clone()
-    });
+    let mut same = self::model("block_on_incline");
+    same.restore(&with_force).unwrap();
+    assert_eq!(model.inputs(), same.inputs());
     model.restore(&before).unwrap();
     model.start().unwrap();
     let mut plain = self::model("block_on_incline");
     plain.start().unwrap();
-    assert_eq!(states(&model), states(&plain));
+    assert_eq!(model.block_states(), plain.block_states());
 }
 
 #[test]
@@ -491,9 +475,8 @@ fn energy_from_nowhere_is_told_to_hosts() {
 /// The implicit integrator is a crate of its own, which hosts of the engine need not link.
 #[test]
 fn a_case_for_the_implicit_integrator_is_refused_with_its_remedy() {
-    let case = include_str!("../examples/cases/block_on_incline.toml");
-    let text = case.replace("[solver]\n", "[solver]\nintegrator = \"implicit\"\n");
-    let loaded = enmm_io::parse_case(&text, "block.toml", std::path::Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
+    let text = text_of("block_on_incline").replace("[solver]\n", "[solver]\nintegrator = \"implicit\"\n");
+    let loaded = parse_case(&text, "block.toml", Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
     let refused = loaded.cosimulation().err().map(|error| error.to_string()).unwrap_or_default();
     for part in ["block.toml", "solver.integrator", "\"implicit\"", "use \"explicit\"", "the program enmm"] {
         assert!(refused.contains(part), "{part}: {refused}");

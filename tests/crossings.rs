@@ -27,6 +27,13 @@ struct Plane {
 }
 
 impl Plane {
+    /// No body yet, on stiff rock of a friction below the slope.
+    fn bare() -> Self {
+        let (outline, joints, bodies) = (String::new(), Vec::new(), Vec::new());
+        let rule = DetectionRule::default();
+        Self { outline, joints, bodies, size: SIZE, young: 10e9, friction_deg: 20.0, seconds: 0.6, rule }
+    }
+
     /// A block 1 m high from `left` to `right` on a base of the given outline, and upright joints below `cuts`.
     fn block(base: &str, [left, right]: [f64; 2], cuts: &[f64]) -> Self {
         let mut joints = vec![[[left, 0.0], [right, 0.0]]];
@@ -35,11 +42,7 @@ impl Plane {
             outline: format!("{base}, [{right}, 0], [{right}, 1], [{left}, 1], [{left}, 0], [0, 0]]"),
             joints,
             bodies: vec![([0.5 * (left + right) + 0.03, 0.52], right - left)],
-            size: SIZE,
-            young: 10e9,
-            friction_deg: 20.0,
-            seconds: 0.6,
-            rule: DetectionRule::default(),
+            ..Self::bare()
         }
     }
 
@@ -54,10 +57,9 @@ impl Plane {
                 ([1.5 + 0.25 * shift, 0.45], 1.0 - 0.5 * shift),
             ],
             size,
-            young: 10e9,
             friction_deg,
             seconds: 0.5,
-            rule: DetectionRule::default(),
+            ..Self::bare()
         }
     }
 
@@ -92,7 +94,7 @@ impl Plane {
             self.seconds,
             self.friction_deg,
         ))
-        .with_detection(self.rule);
+        .with_entrance(self.rule);
         let report = run_stage(&mut simulation);
         assert!(simulation.at_rest(&report), "{report:?}");
         simulation

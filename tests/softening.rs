@@ -2,6 +2,7 @@
 
 use enmm::cosimulation::EventKind;
 use enmm::model::Simulation;
+use enmm::model::bytes::{Keeper, decode, encode};
 
 use crate::common::{refusal, run_stage, simulation};
 
@@ -61,21 +62,26 @@ fn a_bar_breaks_at_its_strength_with_its_energy_of_fracture() {
     }
 }
 
-/// A2: a stiff block under 1 MPa that slides on a bond.
-fn shear_box(size: f64) -> String {
+/// A stiff block of 1 m under 1 MPa that slides on a held slab: their outlines, the mesh, joints and their laws.
+fn slider(domain: &str, [size, angle]: [f64; 2], joints: &str) -> String {
     format!(
-        "title = \"direct shear\"\n[domain]\noutline = [[-1, -0.1], [2, -0.1], [2, 0], [-1, 0]]\n\
-         islands = [[[0, 0], [1, 0], [1, 0.002], [0, 0.002]]]\njoint_law = \"rock\"\n[mesh]\n\
-         size = {size}\nangle_deg = 8\norigin = [0.0137, 0.0071]\n\
-         [rock.rock]\ndensity = 1e6\nyoung = 1e14\npoisson = 0.25\n[joint_law.rock]\nfriction_deg = 35\n\
-         residual_friction_deg = 30\ncohesion = 0.5e6\nresidual_cohesion = 0\ntension = 0.4e6\ntension_energy = 50\n\
-         shear_energy = 500\nnormal_stiffness = 1e11\nshear_stiffness = 1e12\n[gravity]\ny = 0\n\
-         [in_situ]\nsxx = 0\nsyy = -1e6\n[[load]]\nkind = \"pressure\"\nedge = [[0, 0.002], [1, 0.002]]\n\
-         pressure = 1e6\n\
-         [[fix]]\nblock = [0.5, -0.05]\n[[initial_velocity]]\nblock = [0.5, 0.001]\nvelocity = [1.5, 0]\n\
-         [solver]\nfriction_delay = 0\ndt_max = 5e-7\n[[stage]]\nname = \"slide\"\nkind = \"dynamic\"\nduration = 1.0\n\
+        "title = \"direct shear\"\n[domain]\n{domain}\n[mesh]\nsize = {size}\nangle_deg = {angle}\n\
+         origin = [0.0137, 0.0071]\n{joints}normal_stiffness = 1e11\nshear_stiffness = 1e12\n[rock.rock]\n\
+         density = 1e6\nyoung = 1e14\npoisson = 0.25\n[gravity]\ny = 0\n[in_situ]\nsxx = 0\nsyy = -1e6\n\
+         [[load]]\nkind = \"pressure\"\nedge = [[0, 0.002], [1, 0.002]]\npressure = 1e6\n[[fix]]\n\
+         block = [0.5, -0.05]\n[[initial_velocity]]\nblock = [0.5, 0.001]\nvelocity = [1.5, 0]\n[solver]\n\
+         friction_delay = 0\ndt_max = 5e-7\n[[stage]]\nname = \"slide\"\nkind = \"dynamic\"\nduration = 1.0\n\
          damping = 0\n"
     )
+}
+
+/// A2: it slides on a bond.
+fn shear_box(size: f64) -> String {
+    let domain = "outline = [[-1, -0.1], [2, -0.1], [2, 0], [-1, 0]]\njoint_law = \"rock\"\n\
+                  islands = [[[0, 0], [1, 0], [1, 0.002], [0, 0.002]]]";
+    let bond = "[joint_law.rock]\nfriction_deg = 35\nresidual_friction_deg = 30\ncohesion = 0.5e6\n\
+                residual_cohesion = 0\ntension = 0.4e6\ntension_energy = 50\nshear_energy = 500\n";
+    slider(domain, [size, 8.0], bond)
 }
 
 #[test]
@@ -107,22 +113,16 @@ fn a_bond_in_shear_has_peak_and_residual_strength_and_the_slip_between() {
     }
 }
 
-/// A stiff block of 1 m under 1 MPa that slides on a plane of 30°, of which 0.3 m are a bridge of 60° and 0.5 MPa.
+/// It slides on a plane of 30°, of which 0.3 m are a bridge of 60° and 0.5 MPa.
 fn bridged_box(size: f64, angle: f64) -> String {
-    format!(
-        "title = \"bridged shear\"\n[domain]\n\
-         outline = [[-1, -0.1], [2, -0.1], [2, 0], [1, 0], [1, 0.002], [0, 0.002], [0, 0], [-1, 0]]\n\
-         joint_law = \"joint\"\n[mesh]\nsize = {size}\nangle_deg = {angle}\norigin = [0.0137, 0.0071]\n[[joint]]\n\
-         points = [[0, 0], [0.43, 0]]\n[[joint]]\npoints = [[0.73, 0], [1, 0]]\n[[bridge]]\n\
-         points = [[0.43, 0], [0.73, 0]]\nlaw = \"rock\"\n[rock.rock]\ndensity = 1e6\nyoung = 1e14\npoisson = 0.25\n\
-         [joint_law.joint]\nfriction_deg = 30\nnormal_stiffness = 1e11\nshear_stiffness = 1e12\n[joint_law.rock]\n\
-         friction_deg = 60\nresidual_friction_deg = 30\ncohesion = 0.5e6\nresidual_cohesion = 0\ntension = 0.4e6\n\
-         tension_energy = 50\nshear_energy = 2000\nnormal_stiffness = 1e11\nshear_stiffness = 1e12\n[gravity]\ny = 0\n\
-         [in_situ]\nsxx = 0\nsyy = -1e6\n[[load]]\nkind = \"pressure\"\nedge = [[0, 0.002], [1, 0.002]]\n\
-         pressure = 1e6\n[[fix]]\nblock = [0.5, -0.05]\n[[initial_velocity]]\nblock = [0.5, 0.001]\n\
-         velocity = [1.5, 0]\n[solver]\nfriction_delay = 0\ndt_max = 5e-7\n[[stage]]\nname = \"slide\"\n\
-         kind = \"dynamic\"\nduration = 1.0\ndamping = 0\n"
-    )
+    let domain = "outline = [[-1, -0.1], [2, -0.1], [2, 0], [1, 0], [1, 0.002], [0, 0.002], [0, 0], [-1, 0]]\n\
+                  joint_law = \"joint\"";
+    let joints = "[[joint]]\npoints = [[0, 0], [0.43, 0]]\n[[joint]]\npoints = [[0.73, 0], [1, 0]]\n[[bridge]]\n\
+                  points = [[0.43, 0], [0.73, 0]]\nlaw = \"rock\"\n[joint_law.joint]\nfriction_deg = 30\n\
+                  normal_stiffness = 1e11\nshear_stiffness = 1e12\n[joint_law.rock]\nfriction_deg = 60\n\
+                  residual_friction_deg = 30\ncohesion = 0.5e6\nresidual_cohesion = 0\ntension = 0.4e6\n\
+                  tension_energy = 50\nshear_energy = 2000\n";
+    slider(domain, [size, angle], joints)
 }
 
 /// Contacts whose faces lie partly on the bridge have its friction on that part alone: the strength is that of both
@@ -238,8 +238,8 @@ fn a_failure_goes_on_to_the_same_bits_after_rollback_and_from_a_checkpoint() {
     assert!(first.counters.broken > 0.0 && first.counters.broken <= 0.1 + 1e-9, "{:?}", first.counters);
     simulation.return_to(&middle);
     assert_eq!(run(&mut simulation), first);
-    let bytes = enmm::model::bytes::encode(enmm::model::bytes::Keeper::Model, &middle, "hash").expect("bytes");
-    let read = enmm::model::bytes::decode(enmm::model::bytes::Keeper::Model, &bytes, "hash").expect("a state");
+    let bytes = encode(Keeper::Model, &middle, "hash").expect("bytes");
+    let read = decode(Keeper::Model, &bytes, "hash").expect("a state");
     let mut other = crate::common::simulation(&text);
     other.check(&read).expect("a state of this model");
     other.restore(read);

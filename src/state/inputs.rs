@@ -28,7 +28,11 @@ pub struct Inputs {
     pub port_pressure: Vec<f64>,
 }
 
-clone_without_allocating!(Inputs { gravity base_acceleration water_level strength_factor block_force block_moment port_traction port_pressure });
+clone_without_allocating! {
+    Inputs {
+        gravity base_acceleration water_level strength_factor block_force block_moment port_traction port_pressure
+    }
+}
 
 impl Inputs {
     /// The values that the case starts with.

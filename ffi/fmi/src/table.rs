@@ -600,7 +600,7 @@ mod tests {
         assert!(ports().all(|name| place_of(&PORT_QUANTITIES, name).is_some()));
         assert_eq!(ports().count(), PORT_QUANTITIES.len());
         let is_shown = |name: &&str| BLOCK_QUANTITIES.iter().any(|quantity| quantity.column == *name);
-        assert!(FIRST_BLOCK_OUTPUTS.iter().all(|name| is_shown(&name)));
+        assert!(FIRST_BLOCK_OUTPUTS.iter().all(is_shown));
     }
 
     #[test]
