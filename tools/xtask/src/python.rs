@@ -15,20 +15,9 @@ const CASE: &str = "python_tests/short.toml";
 /// Cases that the Python tests have as FMUs of both versions.
 const FMUS: [&str; 2] = ["block_on_incline", "coupled_slope"];
 
-/// Test of the pages of results, which needs a browser.
-const BROWSER_TEST: &str = "python_tests/test_report.py";
-/// Test of a drawing by pyvista, which needs a library that draws without a screen.
-const DRAWING_TEST: &str = "python_tests/test_pyvista.py";
 /// Chromium by the names that systems give it, as `python_tests/browser.py` looks for it.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Processes that run the Python tests, file by file.
-const WORKERS: &str = "2";
-
-/// All Python tests.
-const ALL: &str = "python_tests";
-/// Those of the ensembles.
-const ENSEMBLES: &str = "python_tests/test_ensemble.py";
 /// Those of the interfaces: the C library by ctypes, FMUs by FMPy, results, coupling. They need the usual packages
 /// alone.
 const USUAL: [&str; 10] = [
@@ -62,9 +51,11 @@ impl Share {
     fn arguments(self) -> Vec<&'static str> {
         match self {
             Self::Usual => USUAL.to_vec(),
-            Self::Others => [ALL].into_iter().chain(USUAL.into_iter().flat_map(|file| ["--ignore", file])).collect(),
-            Self::All => vec![ALL],
-            Self::Ensembles => vec![ENSEMBLES],
+            Self::Others => {
+                ["python_tests"].into_iter().chain(USUAL.into_iter().flat_map(|file| ["--ignore", file])).collect()
+            }
+            Self::All => vec!["python_tests"],
+            Self::Ensembles => vec!["python_tests/test_ensemble.py"],
         }
     }
 }
@@ -75,7 +66,7 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     repository::remove(&results)?;
     repository::run(repository.command(repository.enmm()).args(["run", CASE, "--quiet", "-o"]).arg(&results))?;
     let mut pytest = venv::command(repository, if share == Share::Usual { Packages::Usual } else { Packages::All })?;
-    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "-n", WORKERS, "--dist", "loadfile"]);
+    pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "-ra", "-n", "2", "--dist", "loadfile"]);
     pytest.args(share.arguments());
     if share == Share::Ensembles {
         pytest.env("ENMM_LONG", "1");
@@ -99,9 +90,9 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
 pub fn install(repository: &Repository) {
     let load = ["-c", "import ctypes; ctypes.CDLL('libEGL.so.1')"];
     let draws = || venv::command(repository, Packages::All).is_ok_and(|mut python| succeeds(python.args(load)));
-    debian::provide(DRAWING_TEST, "libegl1 libgl1-mesa-dri", draws);
+    debian::provide("python_tests/test_pyvista.py", "libegl1 libgl1-mesa-dri", draws);
     let browses = || BROWSERS.iter().any(|name| succeeds(Command::new(name).arg("--version")));
-    debian::provide(BROWSER_TEST, "chromium", browses);
+    debian::provide("python_tests/test_report.py", "chromium", browses);
 }
 
 /// Packs the FMUs of the tests; returns their folder.

@@ -58,7 +58,7 @@ pub fn quick(repository: &Repository) -> Result<Counts, String> {
 
 /// Runs items by both programs in turn, up to the first difference.
 fn compare(repository: &Repository, [old, new]: [PathBuf; 2], chosen: impl Fn(&Item) -> bool) -> Result<(), String> {
-    let folder = fresh_folder(repository)?;
+    let folder = repository::fresh(repository.target.join("bits"))?;
     // Cases of models are written by one of the two, so that both compute the same ones.
     let here = Emulator::default();
     let makers = [(&old, "old"), (&new, "new")]
@@ -90,7 +90,7 @@ pub fn elsewhere(
     host: &Path,
 ) -> Result<Counts, String> {
     let program = platform.shipped(repository).join(platform.program());
-    let (folder, writer) = (fresh_folder(repository)?, repository.enmm());
+    let (folder, writer) = (repository::fresh(repository.target.join("bits"))?, repository.enmm());
     let maker = Maker { repository, platform, emulator, host: Some(host), program: &program, writer: &writer, folder };
     let runs = |item: &&Item| item.version().is_none_or(|version| has_folder(platform, version));
     let chosen = |item: &&Item| item.quick && item.name != item::LONG_EMULATED && runs(item);
@@ -109,7 +109,7 @@ fn against_golden(repository: &Repository, chosen: impl Fn(&Item) -> bool) -> Re
     {
         println!("verification problems are not compared: {reason}; `cargo xtask bits OLD NEW` holds anywhere");
     }
-    let (folder, program) = (fresh_folder(repository)?, repository.enmm());
+    let (folder, program) = (repository::fresh(repository.target.join("bits"))?, repository.enmm());
     let here = Emulator::default();
     let maker = own(repository, &program, folder, &here);
     beside_golden(&golden, &maker, ITEMS.iter().filter(|item| item.golden && chosen(item) && !is_left_out(item)))
@@ -162,7 +162,7 @@ fn item_beside_golden(golden: &Golden, maker: &Maker, item: &Item) -> Result<Cou
 
 /// Renews the golden table.
 fn renew(repository: &Repository) -> Result<(), String> {
-    let (folder, program) = (fresh_folder(repository)?, repository.enmm());
+    let (folder, program) = (repository::fresh(repository.target.join("bits"))?, repository.enmm());
     let here = Emulator::default();
     let maker = own(repository, &program, folder, &here);
     let mut golden = Golden::here();
@@ -174,11 +174,6 @@ fn renew(repository: &Repository) -> Result<(), String> {
     golden.write(&repository.root)?;
     println!("wrote {}", golden::PLACE);
     Ok(())
-}
-
-/// A folder for the results, without those of an earlier run.
-fn fresh_folder(repository: &Repository) -> Result<PathBuf, String> {
-    repository::fresh(repository.target.join("bits"))
 }
 
 /// Where two results are not the same first: a name that one of them lacks, or a place in a file.
