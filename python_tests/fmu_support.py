@@ -105,7 +105,8 @@ class Fmu:
         return {v.name: v for v in self.description.modelVariables}
 
     def named(self, causality: str) -> list:
-        return [v for v in self.description.modelVariables if v.causality == causality]
+        """Variables of a causality, each by its first name alone."""
+        return [v for v in self.description.modelVariables if v.causality == causality and v.alias is None]
 
     def outputs(self) -> list[str]:
         """Names of all outputs that are numbers."""
