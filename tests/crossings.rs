@@ -94,7 +94,7 @@ impl Plane {
             self.seconds,
             self.friction_deg,
         ))
-        .with_entrance(self.rule);
+        .with_detection(self.rule);
         let report = run_stage(&mut simulation);
         assert!(simulation.at_rest(&report), "{report:?}");
         simulation
