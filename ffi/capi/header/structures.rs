@@ -11,7 +11,7 @@ pub const OLDER_NAMES: [[&str; 3]; 2] =
 
 /// Unions without a name, which C has from C11 on and compilers before it.
 const UNION: &str = "
-#if defined(__GNUC__) && !defined(__cplusplus)
+#if defined(__GNUC__) && !defined(__cplusplus) && (!defined(__STDC_VERSION__) || __STDC_VERSION__ < 201112L)
 #define ENMM_UNION __extension__ union
 #else
 #define ENMM_UNION union
