@@ -50,8 +50,9 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
         let arranged = arrange_within(&segments, tolerance, demand.edges_max());
         arranged.map_err(|error| demand.explain(&error))
     };
-    if let Some(some) = Demand::sample(&pieces(&joints)) {
-        demand.check_sample(&arrange(&mut some.copied())?)?;
+    // A fault of the cut itself is told of all pieces.
+    if let Some(Ok(some)) = Demand::sample(&pieces(&joints)).map(|some| arrange(&mut some.copied())) {
+        demand.check_sample(&some)?;
     }
     let distances = ends::distances(case, (high - low).norm(), tolerance);
     let ends = ends::join(case, &mut joints, &loops.sides(), &distances, |position| loops.hold(position));

@@ -40,7 +40,9 @@ fn usage() -> String {
 fn profile(words: &[&str]) -> Profile {
     match words {
         ["install", "--debug", ..] => Profile::Tested,
-        ["test" | "python" | "ensembles" | "long" | "fuzz" | "faults" | "bits" | "pictures", ..] => Profile::Tested,
+        ["test" | "python" | "ensembles" | "long" | "fuzz" | "faults" | "bits" | "pictures" | "schema", ..] => {
+            Profile::Tested
+        }
         _ => Profile::Shipped,
     }
 }
