@@ -438,7 +438,7 @@ typedef struct enmm_block_state {
    */
   uint32_t reserved;
   /**
-   * Largest penetration of its contacts (m).
+   * Largest penetration (m).
    */
   ENMM_UNION { double penetration_max; double largest_penetration; };
   /**

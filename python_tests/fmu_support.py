@@ -105,8 +105,7 @@ class Fmu:
         return {v.name: v for v in self.description.modelVariables}
 
     def named(self, causality: str) -> list:
-        """Variables of a causality, each by its first name alone."""
-        return [v for v in self.description.modelVariables if v.causality == causality and v.alias is None]
+        return [v for v in self.description.modelVariables if v.causality == causality]
 
     def outputs(self) -> list[str]:
         """Names of all outputs that are numbers."""

@@ -110,7 +110,7 @@ pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
             f64::from(block.contacts.count)
         })
     },
-    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration of its contacts", |block| {
+    Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration", |block| {
         block.contacts.penetration_max
     }),
     Quantity::new(["speed", ""], "m/s", "Speed of the centroid", |block| block.velocity.norm()),

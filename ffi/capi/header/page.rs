@@ -23,8 +23,7 @@ pub fn page() -> String {
     page += &part(
         "Blocks",
         "Columns of `blocks.csv`, members of `enmm_block_state`, fields of `Model.blocks()`, numbers of the page of \
-         a run. C and Python also know `contacts` as `contact_count` and `penetration_max` as `largest_penetration`; \
-         FMI 3 knows each array by `block_` and the name, too.",
+         a run. C and Python also know `contacts` as `contact_count` and `penetration_max` as `largest_penetration`.",
         "array of FMI 3",
         &BLOCK_QUANTITIES,
     );

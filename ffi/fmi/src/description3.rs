@@ -59,10 +59,7 @@ fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
         Type::Binary => "Binary",
     };
     let Some(length) = variable.length else { return xml.leaf(kind, &attributes) };
-    xml.element(kind, &attributes, |xml| {
-        variable.alias.iter().try_for_each(|alias| xml.leaf("Alias", &[("name", alias.clone())]))?;
-        xml.leaf("Dimension", &[("start", length.to_string())])
-    })
+    xml.element(kind, &attributes, |xml| xml.leaf("Dimension", &[("start", length.to_string())]))
 }
 
 fn structure(xml: &mut Xml, table: &Table) -> io::Result<()> {

@@ -143,8 +143,6 @@ pub struct Variable {
     pub length: Option<usize>,
     /// Name of the port that it belongs to.
     pub port: Option<String>,
-    /// Second name, which other interfaces have; FMI 2 has no place for it.
-    pub alias: Option<String>,
     /// Its meaning.
     pub quantity: Quantity,
 }
@@ -313,7 +311,6 @@ impl Rows {
             limits: None,
             length: None,
             port: None,
-            alias: None,
             quantity,
         });
     }
@@ -469,7 +466,6 @@ impl Rows {
             let what = format!("{}, every block", quantity.text);
             let row = self.output(quantity.column, &what, quantity.unit, Quantity::Blocks(place));
             row.length = Some(blocks);
-            row.alias = Some(format!("block_{}", quantity.name)).filter(|alias| *alias != row.name);
             if quantity.is_count {
                 row.kind = Type::Integer;
             }

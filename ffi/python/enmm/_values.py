@@ -163,7 +163,7 @@ BLOCK_FIELDS: dict[str, str] = {
     "kinetic_energy": "Kinetic energy (J/m).",
     "strain_energy": "Strain energy (J/m).",
     "contacts": "Contacts on the block that carry force.",
-    "penetration_max": "Largest penetration of its contacts (m).",
+    "penetration_max": "Largest penetration (m).",
     "speed": "Speed of the centroid (m/s).",
 }
 """Fields of `Model.blocks` and their meanings."""
