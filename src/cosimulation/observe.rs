@@ -34,38 +34,32 @@ pub struct PortState {
 
 /// Numbers of a port as outputs show them: the structures of C and Python in this order, and the FMUs.
 pub const PORT_QUANTITIES: [Quantity<PortState>; 14] = [
-    of_port("displacement_x", "m", "Displacement, x", |port| port.displacement.x),
-    of_port("displacement_y", "m", "Displacement, y up", |port| port.displacement.y),
-    of_port("velocity_x", "m/s", "Velocity, x", |port| port.velocity.x),
-    of_port("velocity_y", "m/s", "Velocity, y up", |port| port.velocity.y),
-    of_port("rotation", "rad", "Rotation, counter-clockwise", |port| port.rotation),
-    of_port("angular_velocity", "rad/s", "Angular velocity, counter-clockwise", |port| port.angular_velocity),
-    of_port("contact_force_x", "N/m", "Sum of the contact forces on the block per metre, x", |port| {
+    Quantity::plain("displacement_x", "m", "Displacement, x", |port| port.displacement.x),
+    Quantity::plain("displacement_y", "m", "Displacement, y up", |port| port.displacement.y),
+    Quantity::plain("velocity_x", "m/s", "Velocity, x", |port| port.velocity.x),
+    Quantity::plain("velocity_y", "m/s", "Velocity, y up", |port| port.velocity.y),
+    Quantity::plain("rotation", "rad", "Rotation, counter-clockwise", |port| port.rotation),
+    Quantity::plain("angular_velocity", "rad/s", "Angular velocity, counter-clockwise", |port| port.angular_velocity),
+    Quantity::plain("contact_force_x", "N/m", "Sum of the contact forces on the block per metre, x", |port| {
         port.contact_force.x
     }),
-    of_port("contact_force_y", "N/m", "Sum of the contact forces on the block per metre, y", |port| {
+    Quantity::plain("contact_force_y", "N/m", "Sum of the contact forces on the block per metre, y", |port| {
         port.contact_force.y
     }),
-    of_port("stress_xx", "Pa", "Mean stress xx, tension positive", |port| port.stress[0]),
-    of_port("stress_yy", "Pa", "Mean stress yy, tension positive", |port| port.stress[1]),
-    of_port("stress_xy", "Pa", "Mean stress xy", |port| port.stress[2]),
-    of_port("normal_force", "N/m", "Sum of the normal forces across the joints, compression positive", |port| {
-        port.normal_force
-    }),
-    of_port("shear_force", "N/m", "Sum of the magnitudes of the shear forces along the joints", |port| {
+    Quantity::plain("stress_xx", "Pa", "Mean stress xx, tension positive", |port| port.stress[0]),
+    Quantity::plain("stress_yy", "Pa", "Mean stress yy, tension positive", |port| port.stress[1]),
+    Quantity::plain("stress_xy", "Pa", "Mean stress xy", |port| port.stress[2]),
+    Quantity::plain(
+        "normal_force",
+        "N/m",
+        "Sum of the normal forces across the joints, compression positive",
+        |port| port.normal_force,
+    ),
+    Quantity::plain("shear_force", "N/m", "Sum of the magnitudes of the shear forces along the joints", |port| {
         port.shear_force
     }),
-    of_port("slip", "m", "Largest accumulated slip along the joints", |port| port.slip),
+    Quantity::plain("slip", "m", "Largest accumulated slip along the joints", |port| port.slip),
 ];
-
-const fn of_port(
-    name: &'static str,
-    unit: &'static str,
-    text: &'static str,
-    get: fn(&PortState) -> f64,
-) -> Quantity<PortState> {
-    Quantity::new([name, name], unit, text, get)
-}
 
 /// Sums and extremes over the whole model.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -114,16 +108,16 @@ pub struct ContactCounts {
 /// Sums and extremes as outputs show them, but for the energies: the structures of C and Python in this order, and the
 /// FMUs. New ones go to the end.
 pub const TOTALS: [Quantity<Totals>; 15] = [
-    extreme("displacement_max", "m", "Largest displacement of a cover", |totals| totals.displacement_max),
-    extreme("velocity_max", "m/s", "Largest velocity of a cover", |totals| totals.velocity_max),
-    extreme("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
+    Quantity::plain("displacement_max", "m", "Largest displacement of a cover", |totals| totals.displacement_max),
+    Quantity::plain("velocity_max", "m/s", "Largest velocity of a cover", |totals| totals.velocity_max),
+    Quantity::plain("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
     Quantity::new(
         ["unbalanced", "unbalanced_ratio"],
         "",
         "Net over applied force, near 0 at rest; where nothing is applied 1, or 0 when all is balanced",
         |totals| totals.unbalanced,
     ),
-    extreme("critical_dt", "s", "Stability limit of the internal step", |totals| totals.critical_dt),
+    Quantity::plain("critical_dt", "s", "Stability limit of the internal step", |totals| totals.critical_dt),
     Quantity::count("open_contacts", "Contacts without force", |totals| f64::from(totals.contacts.open)),
     Quantity::count("slipping_contacts", "Contacts at their shear limit", |totals| f64::from(totals.contacts.slipping)),
     Quantity::count("locked_contacts", "Contacts below their shear limit", |totals| f64::from(totals.contacts.locked)),
@@ -132,24 +126,17 @@ pub const TOTALS: [Quantity<Totals>; 15] = [
     }),
     Quantity::count("slipped_joints", "Joints that have slipped", |totals| f64::from(totals.slipped_joints)),
     Quantity::count("failed_blocks", "Blocks that have failed", |totals| f64::from(totals.failed_blocks)),
-    extreme("overlap_max", "m", "Greatest depth of overlaps of blocks so far, 0 for none", |totals| totals.overlap_max),
+    Quantity::plain("overlap_max", "m", "Greatest depth of overlaps of blocks so far, 0 for none", |totals| {
+        totals.overlap_max
+    }),
     Quantity::count("overlapping_pairs", "Pairs of blocks that have overlapped", |totals| {
         totals.overlapping_pairs as f64
     }),
-    extreme("broken_length", "m", "Bonded length of rock bridges and joints that has broken", |totals| {
+    Quantity::plain("broken_length", "m", "Bonded length of rock bridges and joints that has broken", |totals| {
         totals.broken_length
     }),
     Quantity::count("broken_joints", "Joints whose last bond has broken", |totals| totals.broken_joints as f64),
 ];
-
-const fn extreme(
-    name: &'static str,
-    unit: &'static str,
-    text: &'static str,
-    get: fn(&Totals) -> f64,
-) -> Quantity<Totals> {
-    Quantity::new([name, name], unit, text, get)
-}
 
 impl Cosimulation {
     /// State of a port; see [`Cosimulation::ports`] for their number.

@@ -25,6 +25,11 @@ impl<T> Quantity<T> {
         Self { name, column, unit, text, is_count: false, get }
     }
 
+    /// A number that has the same name everywhere.
+    pub const fn plain(name: &'static str, unit: &'static str, text: &'static str, get: fn(&T) -> f64) -> Self {
+        Self::new([name, name], unit, text, get)
+    }
+
     /// A count, which has the same name everywhere.
     pub const fn count(name: &'static str, text: &'static str, get: fn(&T) -> f64) -> Self {
         Self { name, column: name, unit: "", text, is_count: true, get }

@@ -21,14 +21,7 @@ const UNION: &str = "
 /// Line of the header before the first type.
 const LAST_INCLUDE: &str = "#include <stdint.h>\n";
 
-/// A structure: name, text, members before those of its table, and these.
-struct Structure {
-    name: &'static str,
-    text: &'static str,
-    head: &'static str,
-    members: String,
-}
-
+/// Texts of the structures, and their members before those of the tables.
 const BLOCK: &str = "\
 A block now. Velocities are those of half an internal step ago, as the method has them.";
 const BLOCK_HEAD: &str = "\
@@ -42,6 +35,7 @@ const BLOCK_HEAD: &str = "\
 const ENERGIES: &str = "\
 Energies now and works since the start, per metre of thickness. kinetic + strain + potential + damping + yielding
 /// equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.";
+const TOTALS_TEXT: &str = "Sums and extremes over the model.";
 const PORT: &str = "\
 A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
 /// last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
@@ -53,44 +47,26 @@ const HEAD: &str = "\
 
 /// The structures as source text of Rust.
 pub fn source() -> String {
-    let structures = [
-        Structure {
-            name: "enmm_block_state",
-            text: BLOCK,
-            head: BLOCK_HEAD,
-            members: members(BLOCK_QUANTITIES.iter()),
-        },
-        Structure { name: "enmm_energies", text: ENERGIES, head: HEAD, members: members(layout::energies()) },
-        Structure {
-            name: "enmm_totals",
-            text: "Sums and extremes over the model.",
-            head: HEAD,
-            members: members(TOTALS.iter()),
-        },
-        Structure { name: "enmm_port_state", text: PORT, head: HEAD, members: members(PORT_QUANTITIES.iter()) },
-    ];
-    let source = |Structure { name, text, head, members }: &Structure| {
+    let source = |name: &str, text: &str, head: &str, members: &str| {
         format!("/// {text}\n#[repr(C)]\npub struct {name} {{\n{head}{members}}}\n")
     };
-    structures.iter().map(source).collect()
+    source("enmm_block_state", BLOCK, BLOCK_HEAD, &members(BLOCK_QUANTITIES.iter()))
+        + &source("enmm_energies", ENERGIES, HEAD, &members(layout::energies()))
+        + &source("enmm_totals", TOTALS_TEXT, HEAD, &members(TOTALS.iter()))
+        + &source("enmm_port_state", PORT, HEAD, &members(PORT_QUANTITIES.iter()))
 }
 
 fn members<T: 'static>(table: impl Iterator<Item = &'static Quantity<T>>) -> String {
-    let rows: Vec<_> = table.collect();
     let mut text = String::new();
     let mut is_half = false;
-    for quantity in &rows {
-        let kind = Kind::of(*quantity);
+    for quantity in table {
+        let kind = Kind::of(quantity);
         if is_half && kind != Kind::ShortCount {
             text += "    /// 0.\n    pub reserved: u32,\n";
             is_half = false;
         }
         is_half ^= kind == Kind::ShortCount;
-        let name = match kind {
-            Kind::Real => "f64",
-            Kind::ShortCount => "u32",
-            Kind::Count => "u64",
-        };
+        let name = ["f64", "u32", "u64"][kind as usize];
         let unit = if quantity.unit.is_empty() { String::new() } else { format!(" ({})", quantity.unit) };
         text += &format!("    /// {}{unit}.\n    pub {}: {name},\n", quantity.text, quantity.name);
     }
