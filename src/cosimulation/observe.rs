@@ -118,24 +118,28 @@ pub const TOTALS: [Quantity<Totals>; 15] = [
         |totals| totals.unbalanced,
     ),
     Quantity::plain("critical_dt", "s", "Stability limit of the internal step", |totals| totals.critical_dt),
-    Quantity::count("open_contacts", "Contacts without force", |totals| f64::from(totals.contacts.open)),
-    Quantity::count("slipping_contacts", "Contacts at their shear limit", |totals| f64::from(totals.contacts.slipping)),
-    Quantity::count("locked_contacts", "Contacts below their shear limit", |totals| f64::from(totals.contacts.locked)),
-    Quantity::count("detached_blocks", "Blocks that have lost their last contact at least once", |totals| {
+    Quantity::count(["open_contacts"; 2], "Contacts without force", |totals| f64::from(totals.contacts.open)),
+    Quantity::count(["slipping_contacts"; 2], "Contacts at their shear limit", |totals| {
+        f64::from(totals.contacts.slipping)
+    }),
+    Quantity::count(["locked_contacts"; 2], "Contacts below their shear limit", |totals| {
+        f64::from(totals.contacts.locked)
+    }),
+    Quantity::count(["detached_blocks"; 2], "Blocks that have lost their last contact at least once", |totals| {
         f64::from(totals.detached_blocks)
     }),
-    Quantity::count("slipped_joints", "Joints that have slipped", |totals| f64::from(totals.slipped_joints)),
-    Quantity::count("failed_blocks", "Blocks that have failed", |totals| f64::from(totals.failed_blocks)),
+    Quantity::count(["slipped_joints"; 2], "Joints that have slipped", |totals| f64::from(totals.slipped_joints)),
+    Quantity::count(["failed_blocks"; 2], "Blocks that have failed", |totals| f64::from(totals.failed_blocks)),
     Quantity::plain("overlap_max", "m", "Greatest depth of overlaps of blocks so far, 0 for none", |totals| {
         totals.overlap_max
     }),
-    Quantity::count("overlapping_pairs", "Pairs of blocks that have overlapped", |totals| {
+    Quantity::count(["overlapping_pairs"; 2], "Pairs of blocks that have overlapped", |totals| {
         totals.overlapping_pairs as f64
     }),
     Quantity::plain("broken_length", "m", "Bonded length of rock bridges and joints that has broken", |totals| {
         totals.broken_length
     }),
-    Quantity::count("broken_joints", "Joints whose last bond has broken", |totals| totals.broken_joints as f64),
+    Quantity::count(["broken_joints"; 2], "Joints whose last bond has broken", |totals| totals.broken_joints as f64),
 ];
 
 impl Cosimulation {

@@ -104,12 +104,9 @@ pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
     Quantity::new(["mass", ""], "kg/m", "Mass", |block| block.mass),
     Quantity::new(["kinetic_energy", ""], "J/m", "Kinetic energy", |block| block.kinetic_energy),
     Quantity::new(["strain_energy", ""], "J/m", "Strain energy", |block| block.strain_energy),
-    Quantity {
-        is_count: true,
-        ..Quantity::new(["contacts", "block_contact_count"], "", "Contacts on the block that carry force", |block| {
-            f64::from(block.contacts.count)
-        })
-    },
+    Quantity::count(["contacts", "block_contact_count"], "Contacts on the block that carry force", |block| {
+        f64::from(block.contacts.count)
+    }),
     Quantity::new(["penetration_max", "block_penetration"], "m", "Largest penetration", |block| {
         block.contacts.penetration_max
     }),

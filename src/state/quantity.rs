@@ -30,8 +30,8 @@ impl<T> Quantity<T> {
         Self::new([name, name], unit, text, get)
     }
 
-    /// A count, which has the same name everywhere.
-    pub const fn count(name: &'static str, text: &'static str, get: fn(&T) -> f64) -> Self {
-        Self { name, column: name, unit: "", text, is_count: true, get }
+    /// A number of things.
+    pub const fn count(names: [&'static str; 2], text: &'static str, get: fn(&T) -> f64) -> Self {
+        Self { is_count: true, ..Self::new(names, "", text, get) }
     }
 }

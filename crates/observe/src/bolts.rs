@@ -24,7 +24,7 @@ pub struct BoltLine {
 
 /// Numbers of a free length of a bolt as outputs show them.
 pub const BOLT_QUANTITIES: [Quantity<BoltLine>; 1] =
-    [Quantity::new(["force"; 2], "N/m", "Tension per metre of depth", |bolt| bolt.force)];
+    [Quantity::plain("force", "N/m", "Tension per metre of depth", |bolt| bolt.force)];
 
 /// All bolts, in the order of the model.
 pub fn bolts(simulation: &Simulation) -> Vec<BoltLine> {

@@ -44,10 +44,10 @@ pub struct JointPiece {
 
 /// Numbers of a piece of joint as outputs show them.
 pub const JOINT_QUANTITIES: [Quantity<JointPiece>; 4] = [
-    Quantity::new(["opening"; 2], "m", "Opening since the start, apart positive", |joint| joint.opening),
-    Quantity::new(["slip"; 2], "m", "Slip along the joint since the start", |joint| joint.slip),
-    Quantity::new(["normal_stress"; 2], "Pa", "Normal stress, tension positive", |joint| joint.normal_stress),
-    Quantity::new(["shear_stress"; 2], "Pa", "Shear stress", |joint| joint.shear_stress),
+    Quantity::plain("opening", "m", "Opening since the start, apart positive", |joint| joint.opening),
+    Quantity::plain("slip", "m", "Slip along the joint since the start", |joint| joint.slip),
+    Quantity::plain("normal_stress", "Pa", "Normal stress, tension positive", |joint| joint.normal_stress),
+    Quantity::plain("shear_stress", "Pa", "Shear stress", |joint| joint.shear_stress),
 ];
 
 /// A piece of joint at the start: two edges of the boundary, and the share of the way along each where it begins and

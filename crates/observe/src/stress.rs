@@ -19,7 +19,7 @@ pub const STRESS_QUANTITIES: [Quantity<Stress>; 7] = [
 ];
 
 const fn stress(name: &'static str, text: &'static str, get: fn(&Stress) -> f64) -> Quantity<Stress> {
-    Quantity::new([name, name], "Pa", text, get)
+    Quantity::plain(name, "Pa", text, get)
 }
 
 /// Mean of the stresses xx and yy (Pa).

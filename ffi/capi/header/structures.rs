@@ -66,7 +66,11 @@ fn members<T: 'static>(table: impl Iterator<Item = &'static Quantity<T>>) -> Str
             is_half = false;
         }
         is_half ^= kind == Kind::ShortCount;
-        let name = ["f64", "u32", "u64"][kind as usize];
+        let name = match kind {
+            Kind::Real => "f64",
+            Kind::ShortCount => "u32",
+            Kind::Count => "u64",
+        };
         let unit = if quantity.unit.is_empty() { String::new() } else { format!(" ({})", quantity.unit) };
         text += &format!("    /// {}{unit}.\n    pub {}: {name},\n", quantity.text, quantity.name);
     }
