@@ -4,7 +4,7 @@
 use crate::common::simulation;
 use allocation_counter::measure;
 use enmm::geometry::Vector;
-use enmm::model::Simulation;
+use enmm::model::{Simulation, Wanted};
 
 const CASE: &str = r#"
 title = "two blocks"
@@ -41,7 +41,7 @@ fn a_report_is_always_that_of_the_state_now() {
     simulation.advance(false).unwrap();
     is_of_now(&simulation, "a step");
     assert_ne!(simulation.report(), first);
-    simulation.advance_part(0.5 * simulation.model().dt).unwrap();
+    simulation.advance_part(0.5 * simulation.model().dt, Wanted::Nothing).unwrap();
     is_of_now(&simulation, "a part of a step");
     let drive = simulation.drive();
     (drive.from.gravity, drive.to.gravity) = (Vector::new(1.0, -9.0), Vector::new(1.0, -9.0));

@@ -158,6 +158,11 @@ impl Boundary {
         self.next[k]
     }
 
+    /// Length of an edge in the reference configuration (m).
+    pub fn reference_length(&self, edge: EdgeId) -> f64 {
+        (self.reference[self.after(edge)] - self.reference[edge]).norm()
+    }
+
     /// The sliver on which an edge lies.
     pub fn sliver(&self, edge: EdgeId) -> Option<ElementId> {
         let found = self.slivers.binary_search_by_key(&edge, |sliver| sliver.0);

@@ -6,6 +6,7 @@
 
 use crate::model::SlopeFailure;
 use crate::state::{Counters, Event, EventKind};
+use crate::step::Wanted;
 
 use super::{Cosimulation, CosimulationError, Interpolation};
 
@@ -151,15 +152,16 @@ impl Cosimulation {
             self.next_stage()?;
         }
         let rest = self.simulation.state().rest_of_step(self.simulation.model());
+        let wanted = if left <= rest + same { Wanted::Forces } else { Wanted::Nothing };
         if left >= rest - same {
-            self.step(None, false)?;
+            self.step(None, wanted)?;
             self.grid = None;
             return Ok(rest);
         }
         if self.grid.is_none() {
             self.grid = Some(Box::new(self.simulation.state().clone()));
         }
-        self.step(Some(left), false)?;
+        self.step(Some(left), wanted)?;
         Ok(left)
     }
 

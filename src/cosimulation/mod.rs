@@ -26,7 +26,7 @@ use crate::model::case::{Case, Invalid, StageKind};
 use crate::model::settle;
 use crate::model::{BlockState, Simulation, SlopeFailure};
 use crate::state::{Inputs, Port, State};
-use crate::step::{StepReport, THREADS_FROM};
+use crate::step::{StepReport, THREADS_FROM, Wanted};
 use threads::Pool;
 
 /// How inputs go through a communication step.
@@ -55,6 +55,26 @@ struct Progress {
     interpolation: Interpolation,
     /// End of the last communication step by the host's clock (s).
     host_time: f64,
+    /// What followed from the forces of the last internal step; none where nobody has looked.
+    forces: Option<Forces>,
+}
+
+/// What follows from the forces of an internal step, at its start.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct Forces {
+    /// Net over applied force.
+    unbalanced: f64,
+    /// Energy stored in springs of contacts and supports (J/m).
+    stored: f64,
+    /// Energy stored in bolts (J/m).
+    in_bolts: f64,
+}
+
+impl Forces {
+    fn of(report: &StepReport) -> Self {
+        let StepReport { unbalanced, ledger, .. } = *report;
+        Self { unbalanced, stored: ledger.stored, in_bolts: ledger.bolts.stored }
+    }
 }
 
 /// A model in the hands of a host.
@@ -209,10 +229,12 @@ impl Cosimulation {
         for _ in 0..initial_stages(self.case()) {
             let step = |model: &mut Self| {
                 let wanted = model.simulation.rest_due();
-                model.step(None, wanted).map(|report| wanted.then_some(report))
+                let report = model.step(None, if wanted { Wanted::Report } else { Wanted::Nothing })?;
+                Ok::<_, CosimulationError>(wanted.then_some(report))
             };
             let last = settle::until_over(self, Self::simulation, step)?;
             let report = last.unwrap_or_else(|| self.look(Simulation::report_on));
+            self.progress.forces = Some(Forces::of(&report));
             self.progress.initial_residual = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
             self.next_stage()?;
         }
@@ -260,21 +282,24 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// Advances the model by an internal step, or the `part` (s) of one, on the threads that have been set.
-    fn step(&mut self, part: Option<f64>, report: bool) -> Result<StepReport, CosimulationError> {
+    /// Advances the model by an internal step, or the `part` (s) of one, on the threads that have been set; the report
+    /// holds what is `wanted` of its start.
+    fn step(&mut self, part: Option<f64>, wanted: Wanted) -> Result<StepReport, CosimulationError> {
         if let Some(foreign) = self.pool.as_ref().filter(|pool| pool.here().is_none()) {
             self.set_threads(foreign.threads())?;
         }
         let simulation = &mut self.simulation;
         let mut act = || match part {
-            Some(dt) => simulation.advance_part(dt),
-            None => simulation.advance(report),
+            Some(dt) => simulation.advance_part(dt, wanted),
+            None => simulation.advance_for(wanted),
         };
         let advanced = match self.pool.as_ref().and_then(|pool| pool.here()) {
             Some(pool) => pool.install(act),
             None => act(),
         };
-        Ok(advanced?)
+        let report = advanced?;
+        self.progress.forces = (wanted != Wanted::Nothing).then(|| Forces::of(&report));
+        Ok(report)
     }
 
     /// Result of `look` at the model on the threads of steps or, by its second argument, on the caller's alone, as in a

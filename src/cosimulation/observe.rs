@@ -1,12 +1,12 @@
 //! Outputs for a host: ports and totals. All of them follow from the state alone.
 
-use crate::contact::{Boundary, ContactHistory, ContactState, VertexEdge};
+use crate::contact::{ContactHistory, ContactState, VertexEdge};
 use crate::cover::BlockId;
-use crate::geometry::{Point, Vector};
-use crate::model::Simulation;
+use crate::geometry::Vector;
+use crate::model::{ContactView, Simulation};
 use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
 
-use super::Cosimulation;
+use super::{Cosimulation, Forces};
 
 /// A port as hosts see it. A block fills all but the last three; a boundary displacement, velocity and stress; joints
 /// the last three.
@@ -148,6 +148,14 @@ impl Cosimulation {
     /// # Panics
     /// When there is no such port.
     pub fn port_state(&self, port: usize) -> PortState {
+        PortState { stress: self.stress_at(&self.ports()[port]), ..self.port_motion(port) }
+    }
+
+    /// State of a port without its stress, which costs more than all else.
+    ///
+    /// # Panics
+    /// When there is no such port.
+    pub fn port_motion(&self, port: usize) -> PortState {
         let port = &self.ports()[port];
         match port.kind {
             PortKind::Block => self.block_port(port.block),
@@ -156,16 +164,30 @@ impl Cosimulation {
         }
     }
 
-    /// Sums and extremes now.
+    /// Energies and works (J/m) half an internal step ago, as the velocities are; what contacts, supports and bolts store
+    /// is that of the start of the last internal step.
+    pub fn energies(&self) -> Ledger {
+        let mut ledger = self.simulation.energies_at_velocities();
+        let forces = self.forces();
+        (ledger.stored, ledger.bolts.stored) = (forces.stored, forces.in_bolts);
+        ledger
+    }
+
+    /// What followed from the forces of the last internal step, or will follow from those of the next one when the last
+    /// one was not looked at: before the start, and where a communication step was left before its end.
+    fn forces(&self) -> Forces {
+        self.progress.forces.unwrap_or_else(|| Forces::of(&self.look(Simulation::report_on)))
+    }
+
+    /// Sums and extremes now; the unbalanced ratio is that of the start of the last internal step.
     pub fn totals(&self) -> Totals {
         let state = self.simulation.state();
-        let report = self.look(Simulation::report_on);
         let most = |field: &[Vector]| field.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let contacts = |which| state.contacts.iter().filter(|contact| contact.state == which).count() as u32;
         let of_kind = |event: &&Event, which| event.kind == which && event.subject != u32::MAX;
         let events = |which| state.events.list.iter().filter(|event| of_kind(event, which)).count() as u32;
         Totals {
-            ledger: report.ledger,
+            ledger: self.energies(),
             displacement_max: most(&state.displacement),
             velocity_max: most(&state.velocity),
             contacts: ContactCounts {
@@ -174,7 +196,7 @@ impl Cosimulation {
                 locked: contacts(ContactState::Lock),
             },
             penetration_max: state.counters.penetration_max,
-            unbalanced: report.unbalanced,
+            unbalanced: self.forces().unbalanced,
             critical_dt: self.simulation.model().critical_dt,
             detached_blocks: events(EventKind::Detached),
             slipped_joints: events(EventKind::Slipped),
@@ -186,30 +208,62 @@ impl Cosimulation {
         }
     }
 
-    /// See [`Simulation::contacts`].
+    /// See [`Simulation::contact_views`].
+    pub fn contact_views(&self) -> &[ContactView] {
+        self.look(|simulation, serial| _ = simulation.contact_views(serial));
+        self.simulation.contact_views(true)
+    }
+
+    /// Number of [`Cosimulation::contact_views`].
+    pub fn contact_count(&self) -> usize {
+        self.look(Simulation::contact_count)
+    }
+
+    /// The contacts that the next step will find, with the forces of the last one; a look costs as much as a step.
     pub fn contacts(&self) -> Vec<VertexEdge> {
         self.look(|simulation, serial| simulation.look_ahead_on(serial).1.contacts)
     }
 
-    fn block_port(&self, block: BlockId) -> PortState {
-        let state = self.simulation.motion_of(block);
+    /// Mean stress xx, yy, xy (Pa) in the block of a port, or in the blocks along its boundary; 0 of joints.
+    fn stress_at(&self, port: &Port) -> [f64; 3] {
+        let mut lengths: Vec<(BlockId, f64)> = match port.kind {
+            PortKind::Block => vec![(port.block, 1.0)],
+            PortKind::Boundary => Vec::new(),
+            PortKind::Joint => return [0.0; 3],
+        };
         let boundary = &self.simulation.model().boundary;
-        let positions = self.simulation.positions();
+        for &edge in &port.edges {
+            let (block, length) = (boundary.block[edge], boundary.reference_length(edge));
+            match lengths.iter_mut().find(|of| of.0 == block) {
+                Some(of) => of.1 += length,
+                None => lengths.push((block, length)),
+            }
+        }
+        let total: f64 = lengths.iter().map(|of| of.1).sum();
+        let mut mean = [0.0; 3];
+        for (block, length) in lengths {
+            let (stress, _) = self.simulation.stress_of(block);
+            (0..3).for_each(|k| mean[k] += stress[k] * length);
+        }
+        mean.map(|stress| stress / total)
+    }
+
+    fn block_port(&self, block: BlockId) -> PortState {
+        let motion = self.simulation.motion_of(block);
         let mut contact_force = Vector::zeros();
         for contact in &self.simulation.state().contacts {
-            let [of_node, of_edge] = contact_blocks(boundary, contact);
+            let [of_node, of_edge] = self.simulation.blocks_of(contact);
             let sign = f64::from(i8::from(of_node == block) - i8::from(of_edge == block));
             if sign != 0.0 {
-                contact_force += force_on_node(boundary, &positions, contact) * sign;
+                contact_force += self.force_on_node(contact) * sign;
             }
         }
         PortState {
-            displacement: state.displacement,
-            velocity: state.velocity,
-            rotation: state.rotation,
-            angular_velocity: state.angular_velocity,
+            displacement: motion.displacement,
+            velocity: motion.velocity,
+            rotation: motion.rotation,
+            angular_velocity: motion.angular_velocity,
             contact_force,
-            stress: state.mean_stress,
             ..PortState::default()
         }
     }
@@ -221,17 +275,14 @@ impl Cosimulation {
         let mut total = 0.0;
         for &edge in &port.edges {
             let ends = [edge, boundary.after(edge)];
-            let length = (boundary.reference[ends[1]] - boundary.reference[ends[0]]).norm();
+            let length = boundary.reference_length(edge);
             let sample = |field: &[Vector]| ends.map(|k| boundary.sample(k, field)).iter().sum::<Vector>() * 0.5;
             mean.displacement += sample(&state.displacement) * length;
             mean.velocity += sample(&state.velocity) * length;
-            let (stress, _) = self.simulation.stress_of(boundary.block[edge]);
-            (0..3).for_each(|k| mean.stress[k] += stress[k] * length);
             total += length;
         }
         mean.displacement /= total;
         mean.velocity /= total;
-        mean.stress = mean.stress.map(|s| s / total);
         mean
     }
 
@@ -249,18 +300,10 @@ impl Cosimulation {
         }
         sum
     }
-}
 
-/// Blocks of node and edge of a contact.
-fn contact_blocks(boundary: &Boundary, contact: &ContactHistory) -> [BlockId; 2] {
-    let node = boundary.nodes.point[contact.node];
-    [boundary.block[node], boundary.block[contact.edge]]
-}
-
-/// Force of a contact on its node (N/m); its edge feels the opposite.
-fn force_on_node(boundary: &Boundary, positions: &[Point], contact: &ContactHistory) -> Vector {
-    let edge = contact.edge;
-    let along = (positions[boundary.after(edge)] - positions[edge]).normalize();
-    let normal = Vector::new(along.y, -along.x);
-    normal * contact.normal_force + Vector::new(-normal.y, normal.x) * contact.shear_force
+    /// Force of a contact on its node (N/m); its edge feels the opposite.
+    fn force_on_node(&self, contact: &ContactHistory) -> Vector {
+        let normal = self.simulation.normal_of(contact.edge);
+        normal * contact.normal_force + Vector::new(-normal.y, normal.x) * contact.shear_force
+    }
 }

@@ -7,7 +7,7 @@ use crate::model::fit::{self, Unfit};
 use crate::state::State;
 use crate::state::bytes::{self, BytesError, Keeper};
 
-use super::{Cosimulation, CosimulationError, Progress};
+use super::{Cosimulation, CosimulationError, Forces, Progress};
 
 /// The state of a model at one instant, with the inputs that hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -95,13 +95,18 @@ impl Cosimulation {
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
         let Saved { hash: _, state, grid, progress, checked: _ } = saved;
-        let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, host_time } =
+        let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, host_time, forces } =
             *progress;
         self.simulation.check(state)?;
         fit::at_most("origin", origin, state.step)?;
         fit::between("start", start, 0.0, fit::TIME)?;
         fit::between("initial_residual", initial_residual, 0.0, f64::INFINITY)?;
         fit::number("host_time", host_time, fit::TIME)?;
+        if let Some(Forces { unbalanced, stored, in_bolts }) = forces {
+            fit::between("forces: unbalanced", unbalanced, 0.0, f64::INFINITY)?;
+            fit::number("forces: stored", stored, fit::FORCE)?;
+            fit::number("forces: in_bolts", in_bolts, fit::FORCE)?;
+        }
         let Some(grid) = grid else { return Ok(()) };
         let named = |unfit: Unfit| Unfit { what: format!("grid: {}", unfit.what), ..unfit };
         self.simulation.check(grid).map_err(named)?;

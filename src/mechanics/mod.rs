@@ -25,8 +25,8 @@ pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::MassMatrix;
 pub use motion::{
-    BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, rigid_motion, rigid_velocity,
-    turning,
+    BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, motion_with_energy, rigid_motion,
+    rigid_velocity, turning,
 };
 pub use record::Record;
 pub use turn::Turn;

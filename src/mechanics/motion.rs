@@ -107,11 +107,14 @@ impl BlockCovers<'_> {
 
 /// Kinetic energy (J/m) of a block in its metric (Eq. 5).
 pub fn kinetic_energy(covers: &BlockCovers) -> f64 {
+    energy_of(covers, &covers.sums(covers.velocity, covers.centre()))
+}
+
+fn energy_of(covers: &BlockCovers, sums: &Sums) -> f64 {
     let (mass_matrix, block) = (covers.mass_matrix, covers.block);
-    let sums = covers.sums(covers.velocity, covers.centre());
     let (polar, lumped) = (mass_matrix.polar[block], mass_matrix.polar_lumped[block]);
     0.5 * mass_matrix.rigid_mass(block) * sums.velocity.norm_squared()
-        + 0.5 * covers.product(covers.velocity, covers.velocity, &sums, &sums)
+        + 0.5 * covers.product(covers.velocity, covers.velocity, sums, sums)
         + 0.5 * (polar - lumped) / (lumped * sums.polar) * sums.moment * sums.moment
 }
 
@@ -120,6 +123,13 @@ pub fn rigid_motion(covers: &BlockCovers) -> (Point, Vector, f64) {
     let centre = covers.centre();
     let sums = covers.sums(covers.velocity, centre);
     (centre, sums.velocity, covers.spin(&sums))
+}
+
+/// The rigid motion of a block with its kinetic energy (J/m).
+pub fn motion_with_energy(covers: &BlockCovers) -> ((Point, Vector, f64), f64) {
+    let centre = covers.centre();
+    let sums = covers.sums(covers.velocity, centre);
+    ((centre, sums.velocity, covers.spin(&sums)), energy_of(covers, &sums))
 }
 
 /// Angular velocity (rad/s) with which a step turns a block: 0 of a fixed one.

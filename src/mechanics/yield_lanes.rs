@@ -23,11 +23,18 @@ impl ElementRow {
     /// The elements of a range.
     #[inline(always)]
     pub fn new(covers: &Covers, averaging: &Averaging, elements: Range<usize>) -> Self {
+        let mut row = Self::of_elastic(covers, elements.clone());
+        ElementId::range(elements).enumerate().for_each(|(lane, e)| row.patches.set(lane, e, averaging));
+        row
+    }
+
+    /// The elements of a range, whose patches nobody needs.
+    #[inline(always)]
+    pub fn of_elastic(covers: &Covers, elements: Range<usize>) -> Self {
         let mut row = Self::default();
         for (lane, e) in ElementId::range(elements).enumerate() {
             row.covers.iter_mut().zip(covers.element_covers[e]).for_each(|(at, id)| at.set(lane, id.number()));
             row.second |= covers.element_triangle[e].set << lane;
-            row.patches.set(lane, e, averaging);
         }
         row
     }

@@ -3,6 +3,7 @@
 pub mod assemble;
 mod failure;
 pub mod fit;
+mod looks;
 pub mod mechanism;
 mod observe;
 pub mod overlap;
@@ -20,7 +21,7 @@ pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};
-pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState, MONITOR_QUANTITIES, MonitorState};
+pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState};
 pub use restless::Restless;
 pub use simulation::Simulation;
 
@@ -29,4 +30,4 @@ pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
     BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State,
 };
-pub use crate::step::{StepError, StepReport};
+pub use crate::step::{StepError, StepReport, Wanted};

@@ -3,10 +3,10 @@
 //!
 //! All of it follows from the state alone, so that a restored model shows the same.
 
-use crate::contact::{ContactHistory, ContactState};
-use crate::cover::{BlockId, CoverId, ElementId};
+use crate::contact::{ContactHistory, ContactState, EdgeId, LawId, VertexEdge};
+use crate::cover::{BlockId, CoverId};
 use crate::geometry::{Point, Vector};
-use crate::state::{Model, Quantity, State};
+use crate::state::{Model, Quantity};
 use crate::step;
 
 use super::Simulation;
@@ -44,6 +44,27 @@ pub struct BlockState {
     pub strain_energy: f64,
     /// Number and penetration of its contacts.
     pub contacts: BlockContacts,
+}
+
+/// A contact as hosts see it, with the forces of the last step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactView {
+    /// Open, slip or lock.
+    pub state: ContactState,
+    /// Joint law.
+    pub law: LawId,
+    /// Blocks of the node and of the edge.
+    pub blocks: [BlockId; 2],
+    /// Node now (m).
+    pub position: Point,
+    /// Outward unit normal of the edge now.
+    pub normal: Vector,
+    /// Length of boundary that the node stands for (m).
+    pub length: f64,
+    /// Force on the node along the normal (N/m, compression positive).
+    pub normal_force: f64,
+    /// Force on the node along the normal turned by 90° counter-clockwise (N/m).
+    pub shear_force: f64,
 }
 
 /// Contacts of a block as hosts see them.
@@ -127,48 +148,157 @@ pub const MONITOR_QUANTITIES: [Quantity<MonitorState>; 4] = [
 impl Simulation {
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
-        let positions = positions(self.model(), self.state());
-        let mut states: Vec<BlockState> = self.model().covers.blocks().map(|block| self.motion_of(block)).collect();
-        let boundary = &self.model().boundary;
-        for contact in &self.state().contacts {
-            let node = boundary.nodes.point[contact.node];
-            let depth = penetration(self.model(), &positions, contact);
-            for block in [boundary.block[node], boundary.block[contact.edge]] {
-                let state = &mut states[block];
-                state.contacts.count += u32::from(contact.state != ContactState::Open);
-                state.contacts.penetration_max = state.contacts.penetration_max.max(depth);
-            }
-        }
-        for state in &mut states {
-            state.detached = state.contacts.count == 0 && !state.fixed && !state.removed;
-        }
-        states
+        self.blocks().to_vec()
     }
 
-    /// The state of one block without the quantities of its contacts.
+    /// The same, worked out at the first look after a step.
+    pub fn blocks(&self) -> &[BlockState] {
+        self.looks.blocks.get_or_init(|| {
+            let mut states: Vec<BlockState> = self.model().covers.blocks().map(|block| self.motion_of(block)).collect();
+            self.add_stresses(&mut states);
+            for contact in &self.state().contacts {
+                let depth = self.penetration(contact);
+                for block in self.blocks_of(contact) {
+                    let state = &mut states[block];
+                    state.contacts.count += u32::from(contact.state != ContactState::Open);
+                    state.contacts.penetration_max = state.contacts.penetration_max.max(depth);
+                }
+            }
+            for state in &mut states {
+                state.detached = state.contacts.count == 0 && !state.fixed && !state.removed;
+            }
+            states
+        })
+    }
+
+    /// Adds the area means of stress, and the strain energies of all blocks.
+    fn add_stresses(&self, states: &mut [BlockState]) {
+        let covers = &self.model().covers;
+        self.model().each_stressed(
+            self.state(),
+            &self.state().displacement,
+            0..covers.element_count(),
+            |e, stress, energy| {
+                let state = &mut states[covers.element_block[e]];
+                (0..3).for_each(|k| state.mean_stress[k] += stress[k] * covers.element_area[e] / state.area);
+                state.strain_energy += energy * covers.element_area[e];
+            },
+        );
+    }
+
+    /// Blocks of node and edge of a contact.
+    pub fn blocks_of(&self, contact: &ContactHistory) -> [BlockId; 2] {
+        let boundary = &self.model().boundary;
+        [boundary.block[boundary.nodes.point[contact.node]], boundary.block[contact.edge]]
+    }
+
+    /// Number of [`Simulation::contact_views`]; with `serial` on the calling thread alone.
+    pub fn contact_count(&self, serial: bool) -> usize {
+        if self.knows_contacts() { self.state().contacts.len() } else { self.contact_views(serial).len() }
+    }
+
+    /// The contacts of the last step at their places now, worked out at the first look after a step. Before the first
+    /// step of a stage they are those that this step will find. With `serial` on the calling thread alone.
+    pub fn contact_views(&self, serial: bool) -> &[ContactView] {
+        self.looks.contacts.get_or_init(|| {
+            if self.knows_contacts() {
+                let state = self.state();
+                state.contacts.iter().enumerate().map(|(k, contact)| self.view_of_last(k, contact)).collect()
+            } else {
+                let ahead = self.look_ahead_on(serial).1.contacts;
+                ahead.iter().map(|contact| self.view_of_next(contact)).collect()
+            }
+        })
+    }
+
+    /// Whether the state has the contacts of a step of this stage with their lengths.
+    fn knows_contacts(&self) -> bool {
+        let state = self.state();
+        let count = state.contacts.len();
+        let has_stepped = state.stage_step > 0 || state.part > 0.0;
+        has_stepped && (state.bonds.len() == count || state.found.contacts.len() == count)
+    }
+
+    /// A contact of the last step, at its place among them.
+    fn view_of_last(&self, k: usize, contact: &ContactHistory) -> ContactView {
+        let (model, state) = (self.model(), self.state());
+        let (law, length) = match (state.bonds.get(k), state.found.contacts.get(k)) {
+            (Some(bond), _) => (bond.law, bond.lengths[0]),
+            (None, found) => {
+                let trace = model.boundary.trace[contact.edge].or_else(|| model.boundary.node_trace(contact.node));
+                let law = trace.map_or(model.default_law, |trace| state.law_switch[model.trace_law[trace]]);
+                (law, found.map_or(0.0, |found| found.length))
+            }
+        };
+        ContactView {
+            state: contact.state,
+            law,
+            blocks: self.blocks_of(contact),
+            position: self.position(model.boundary.nodes.point[contact.node]),
+            normal: self.normal_of(contact.edge),
+            length,
+            normal_force: contact.normal_force,
+            shear_force: contact.shear_force,
+        }
+    }
+
+    /// A contact that the next step will find.
+    fn view_of_next(&self, contact: &VertexEdge) -> ContactView {
+        ContactView {
+            state: contact.history.state,
+            law: contact.law,
+            blocks: contact.blocks(&self.model().boundary),
+            position: self.position(contact.point),
+            normal: contact.normal,
+            length: contact.length,
+            normal_force: contact.history.normal_force,
+            shear_force: contact.history.shear_force,
+        }
+    }
+
+    /// Outward unit normal of an edge now.
+    pub fn normal_of(&self, edge: EdgeId) -> Vector {
+        let along = (self.position(self.model().boundary.after(edge)) - self.position(edge)).normalize();
+        Vector::new(along.y, -along.x)
+    }
+
+    /// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
+    fn penetration(&self, contact: &ContactHistory) -> f64 {
+        let edge = contact.edge;
+        let [a, b] = [edge, self.model().boundary.after(edge)].map(|point| self.position(point));
+        let node = self.position(self.model().boundary.nodes.point[contact.node]);
+        ((b - a).normalize().perp(&(node - a))).max(0.0)
+    }
+
+    /// Current position (m) of a point of the boundary.
+    fn position(&self, point: EdgeId) -> Point {
+        let model = self.model();
+        let position = |i: CoverId| model.covers.star_position[i] + self.state().displacement[i];
+        let boundary = &model.boundary;
+        boundary.covers[point].iter().zip(&boundary.weights[point]).map(|(&i, w)| position(i) * *w).sum()
+    }
+
+    /// The state of one block without the quantities of its contacts, stress and strain energy.
     pub fn motion_of(&self, block: BlockId) -> BlockState {
         let (model, state) = (self.model(), self.state());
         let covers = &model.covers;
         let mass_matrix = &self.workspace().mass_matrix;
         let (_, velocity, spin, kinetic) = step::block_motion(model, state, mass_matrix, block);
-        let displacement = self.displacement_of(block);
+        let (start, displacement) = (mean(model, &covers.star_position, block), self.displacement_of(block));
         let area = covers.block_area(block);
-        let (mean_stress, strain_energy) = self.stress_of(block);
         let removed = state.removed[block];
         BlockState {
             id: block.number(),
             fixed: mass_matrix.fixed[block],
             removed,
-            centroid: mean(model, &covers.star_position, block) + displacement,
+            centroid: start + displacement,
             displacement,
-            rotation: rotation(model, &state.displacement, block),
+            rotation: rotation_about(model, &state.displacement, block, [start, displacement]),
             velocity,
             angular_velocity: spin,
-            mean_stress,
             area,
             mass: model.mass_matrix.total[block],
             kinetic_energy: if removed { 0.0 } else { kinetic },
-            strain_energy,
             ..BlockState::default()
         }
     }
@@ -181,12 +311,10 @@ impl Simulation {
         let covers = &model.covers;
         let area = covers.block_area(block);
         let (mut stress, mut strain_energy) = ([0.0; 3], 0.0);
-        let patches = model.patch_means(state, covers.elements_of(block));
-        for e in ElementId::range(covers.elements_of(block)) {
-            let of_element = model.stress_under(state, e, &patches);
+        model.each_stressed(state, &state.displacement, covers.elements_of(block), |e, of_element, energy| {
             (0..3).for_each(|k| stress[k] += of_element[k] * covers.element_area[e] / area);
-            strain_energy += model.strain_energy(state, e, &patches) * covers.element_area[e];
-        }
+            strain_energy += energy * covers.element_area[e];
+        });
         (stress, strain_energy)
     }
 
@@ -229,18 +357,8 @@ impl Simulation {
 
     /// Current positions of the boundary points (m).
     pub fn positions(&self) -> Vec<Point> {
-        positions(self.model(), self.state())
+        self.model().boundary.edges().map(|point| self.position(point)).collect()
     }
-}
-
-/// Current positions of the boundary points (m).
-fn positions(model: &Model, state: &State) -> Vec<Point> {
-    let boundary = &model.boundary;
-    let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
-    let sum = |(covers, weights): (&[CoverId; 3], &[f64; 3])| {
-        covers.iter().zip(weights).map(|(&i, w)| position(i) * *w).sum()
-    };
-    boundary.covers.iter().zip(&boundary.weights).map(sum).collect()
 }
 
 /// Mean of a cover field over a block's mass.
@@ -252,7 +370,11 @@ pub(super) fn mean(model: &Model, field: &[Vector], block: BlockId) -> Vector {
 /// Angle (rad) of the rotation that fits the displacements of the covers of a block best, weighted by mass.
 pub(super) fn rotation(model: &Model, displacement: &[Vector], block: BlockId) -> f64 {
     let centre = mean(model, &model.covers.star_position, block);
-    let shift = mean(model, displacement, block);
+    rotation_about(model, displacement, block, [centre, mean(model, displacement, block)])
+}
+
+/// The same, given the mass centroid (m) and its displacement (m).
+fn rotation_about(model: &Model, displacement: &[Vector], block: BlockId, [centre, shift]: [Vector; 2]) -> f64 {
     let (mut cosine, mut sine) = (0.0, 0.0);
     for i in model.covers.covers_of(block) {
         let before = model.covers.star_position[i] - centre;
@@ -261,12 +383,4 @@ pub(super) fn rotation(model: &Model, displacement: &[Vector], block: BlockId) -
         sine += model.mass_matrix.row_sum[i] * before.perp(&after);
     }
     libm::atan2(sine, cosine)
-}
-
-/// Depth (m) of a contact's node behind its edge, 0 when it lies before it.
-fn penetration(model: &Model, positions: &[Point], contact: &ContactHistory) -> f64 {
-    let edge = contact.edge;
-    let (a, b) = (positions[edge], positions[model.boundary.after(edge)]);
-    let node = positions[model.boundary.nodes.point[contact.node]];
-    ((b - a).normalize().perp(&(node - a))).max(0.0)
 }

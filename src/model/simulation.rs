@@ -6,10 +6,11 @@ use crate::contact::{DetectionRule, SideId, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::state::{Drive, Event, EventKind, Ledger, Model, State, Workspace};
-use crate::step::{self, Regime, StepError, StepReport};
+use crate::step::{self, Regime, StepError, StepReport, Wanted};
 
 use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
 use super::case::{Case, Invalid, Stage};
+use super::looks::Looks;
 use super::overlap::{self, Audit, Overlap};
 
 /// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
@@ -24,8 +25,8 @@ pub struct Simulation {
     pub(super) built: Built,
     pub(super) workspace: Workspace,
     pub(super) regime: Regime,
-    /// The report on the state now, once a caller has requested it: it costs a step.
-    pub(super) report: OnceLock<StepReport>,
+    /// What callers have looked at since the model last changed.
+    pub(super) looks: Looks,
     /// The blocks as the audit of overlaps cuts them, once it has had to compare two.
     audit: OnceLock<Audit>,
 }
@@ -62,7 +63,7 @@ impl Simulation {
             built,
             workspace: Workspace::default(),
             regime: Regime::Dynamic { damping: 0.0 },
-            report: OnceLock::new(),
+            looks: Looks::default(),
             audit: OnceLock::new(),
         };
         simulation.begin_stage(0, 0.0)?;
@@ -74,7 +75,7 @@ impl Simulation {
     pub fn with_detection(mut self, rule: DetectionRule) -> Self {
         self.built.model.detection = rule;
         self.built.state.found.forget();
-        self.report.take();
+        self.looks.forget();
         self
     }
 
@@ -128,7 +129,7 @@ impl Simulation {
 
     /// Stops all blocks, as a damper would: the ledger takes their kinetic energy as damped.
     pub fn arrest(&mut self) {
-        self.report.take();
+        self.looks.forget();
         let kinetic: f64 = self.model().covers.blocks().map(|b| self.rigid_motion_of(b).3).sum();
         self.built.state.ledger.damping += kinetic;
         self.built.state.velocity.fill(Vector::zeros());
@@ -145,7 +146,7 @@ impl Simulation {
 
     /// Inputs of the host, to be changed.
     pub fn drive(&mut self) -> &mut Drive {
-        self.report.take();
+        self.looks.report.take();
         &mut self.built.state.drive
     }
 
@@ -175,7 +176,7 @@ impl Simulation {
 
     /// Makes regime and buffers those of the state.
     fn take_up(&mut self) {
-        self.report.take();
+        self.looks.forget();
         self.regime = self.regime_of(self.built.state.stage as usize);
         step::prepare(&self.built.model, &self.built.state, &mut self.workspace);
     }
@@ -186,11 +187,19 @@ impl Simulation {
     /// # Errors
     /// A numerical failure; the state is then invalid and must be restored.
     pub fn advance(&mut self, report: bool) -> Result<StepReport, StepError> {
-        self.report.take();
-        let is_due = report && self.rest_due();
+        self.advance_for(if report { Wanted::Report } else { Wanted::Nothing })
+    }
+
+    /// As [`Simulation::advance`]; the report holds what is `wanted` of the start of the step.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_for(&mut self, wanted: Wanted) -> Result<StepReport, StepError> {
+        self.looks.forget();
+        let is_due = wanted == Wanted::Report && self.rest_due();
         let is_small = self.workspace.selection.kept_gaps.is_some();
         let audits = self.state().step.is_multiple_of(overlap::EVERY) && !is_small;
-        let made = step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, report)?;
+        let made = step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, wanted)?;
         if is_due {
             self.built.state.most_rest = self.most_rest_with(&made);
         }
@@ -223,13 +232,14 @@ impl Simulation {
         self.audit.get_or_init(|| Audit::new(self))
     }
 
-    /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid.
+    /// Advances `dt` (s), a part of an internal step that ends before the next point of the grid; the report holds what
+    /// is `wanted` of its start.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
-    pub fn advance_part(&mut self, dt: f64) -> Result<StepReport, StepError> {
-        self.report.take();
-        step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, dt)
+    pub fn advance_part(&mut self, dt: f64, wanted: Wanted) -> Result<StepReport, StepError> {
+        self.looks.forget();
+        step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, dt, wanted)
     }
 
     /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances. They are worked out
@@ -241,13 +251,13 @@ impl Simulation {
     /// As [`Simulation::report`]; with `serial` on the calling thread alone.
     pub fn report_on(&self, serial: bool) -> StepReport {
         // Not `get_or_init`: a thread of the pool that waits for others may take up work that requests it, too.
-        if let Some(report) = self.report.get() {
+        if let Some(report) = self.looks.report.get() {
             return *report;
         }
         let mut state = self.state().clone();
         state.drive.hold_last();
         let report = step::outlook(self.model(), self.regime, state, serial);
-        *self.report.get_or_init(|| report)
+        *self.looks.report.get_or_init(|| report)
     }
 
     /// The contacts that the next step will find, with the forces of the last one; nothing advances.
@@ -288,6 +298,12 @@ impl Simulation {
                  solver.dt_safety, or refine mesh.size"
             )
         })
+    }
+
+    /// Energies and works (J/m) half an internal step ago, at the time of the velocities. What contacts, supports and bolts store follows from forces and is not in it.
+    pub fn energies_at_velocities(&self) -> Ledger {
+        let look = || step::energies_at_velocities(self.model(), self.state(), &self.workspace.mass_matrix);
+        *self.looks.energies.get_or_init(look)
     }
 
     /// Energies (J/m) now beside the works so far: kinetic, strain and potential energy.

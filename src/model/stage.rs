@@ -61,7 +61,7 @@ impl Simulation {
     }
 
     pub(super) fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
-        self.report.take();
+        self.looks.forget();
         let before = self.energies();
         self.excavate(stage)?;
         change_laws(&self.case, stage, &mut self.built.state.laws, &mut self.built.state.law_switch);

@@ -127,6 +127,51 @@ impl<F: Arithmetic> Deformation<F> {
         (xy * (strain[0] - strain[1]) - strain[2] * (xx - yy)) / self.trace
     }
 
+    /// First Piola–Kirchhoff stress (Pa) without the pre-stress (Eq. 7), row by row, of rock with Lamé's constants λ
+    /// and μ (Pa).
+    #[inline(always)]
+    fn piola(&self, [lambda, mu]: &[F; 2]) -> [F; 4] {
+        let (d, two) = (self.stretch(), self.trace.splat(2.0));
+        let (two_mu, volume) = (two * *mu, *lambda * (self.trace - two));
+        let (c, s) = (self.cos, self.sin);
+        [two_mu * d[0] + volume * c, two_mu * d[1] - volume * s, two_mu * d[2] + volume * s, two_mu * d[3] + volume * c]
+    }
+
+    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that rotates with the rock (Eq. 26).
+    #[inline(always)]
+    fn carried(&self, pre: &[F; 3]) -> [F; 4] {
+        let [f11, f12, f21, f22] = self.f;
+        let [xx, yy, xy] = *pre;
+        [f11 * xx + f12 * xy, f11 * xy + f12 * yy, f21 * xx + f22 * xy, f21 * xy + f22 * yy]
+    }
+
+    /// Stress xx, yy, xy (Pa, tension positive) in global axes: P·Rᵀ, and F·σ₀·Fᵀ/det F of the pre-stress.
+    #[inline(always)]
+    pub fn stress(&self, constants: &[F; 2], pre: &[F; 3]) -> [F; 3] {
+        let (p, q) = (self.piola(constants), self.carried(pre));
+        let (c, s) = (self.cos, self.sin);
+        let [f11, f12, f21, f22] = self.f;
+        let volume = f11 * f22 - f12 * f21;
+        [
+            p[0] * c - p[1] * s + (q[0] * f11 + q[1] * f12) / volume,
+            p[2] * s + p[3] * c + (q[2] * f21 + q[3] * f22) / volume,
+            p[0] * s + p[1] * c + (q[0] * f21 + q[1] * f22) / volume,
+        ]
+    }
+
+    /// Strain energy (J per m² of reference area; Eq. 8), with the work of the pre-stress.
+    #[inline(always)]
+    pub fn energy(&self, [lambda, mu]: &[F; 2], pre: &[F; 3]) -> F {
+        let d = self.stretch();
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3];
+        let [f11, f12, f21, f22] = self.f;
+        let [half, one] = [0.5, 1.0].map(|value| self.trace.splat(value));
+        let green = [f11 * f11 + f21 * f21 - one, f12 * f12 + f22 * f22 - one, f11 * f12 + f21 * f22];
+        let pre_work = half * (pre[0] * green[0] + pre[1] * green[1]) + pre[2] * green[2];
+        let dilatation = self.dilatation();
+        *mu * square + half * *lambda * (dilatation * dilatation) + pre_work
+    }
+
     /// R·t of a tensor, row by row.
     #[inline(always)]
     pub fn turn_rows(&self, t: [F; 4]) -> [F; 4] {
@@ -151,48 +196,11 @@ impl Deformation {
         Self::of(First, before)
     }
 
-    /// First Piola–Kirchhoff stress (Pa) without the pre-stress (Eq. 7), row by row.
-    fn piola(&self, rock: &Elasticity) -> [f64; 4] {
-        let d = self.stretch();
-        let (two_mu, volume) = (2.0 * rock.mu, rock.lambda * (self.trace - 2.0));
-        let (c, s) = (self.cos, self.sin);
-        [two_mu * d[0] + volume * c, two_mu * d[1] - volume * s, two_mu * d[2] + volume * s, two_mu * d[3] + volume * c]
-    }
-
-    /// F·σ₀: the pre-stress as a second Piola–Kirchhoff stress that rotates with the rock (Eq. 26).
-    fn carried(&self, pre: &PreStress) -> [f64; 4] {
-        let [f11, f12, f21, f22] = self.f;
-        let [xx, yy, xy] = *pre;
-        [f11 * xx + f12 * xy, f11 * xy + f12 * yy, f21 * xx + f22 * xy, f21 * xy + f22 * yy]
-    }
-
     /// Forces (N/m) on the three covers of an element of cut area `area` (m²) (Eq. 7).
     pub fn forces(&self, g: &[Vector; 3], area: f64, rock: &Elasticity, pre: &PreStress) -> [Vector; 3] {
-        let (own, carried) = (self.piola(rock), self.carried(pre));
+        let (own, carried) = (self.piola(&rock.constants()), self.carried(pre));
         let p = [0, 1, 2, 3].map(|k| -area * (own[k] + carried[k]));
         g.map(|g| Vector::new(p[0] * g.x + p[1] * g.y, p[2] * g.x + p[3] * g.y))
-    }
-
-    /// Stress xx, yy, xy (Pa, tension positive) in global axes: P·Rᵀ, and F·σ₀·Fᵀ/det F of the pre-stress.
-    pub fn stress(&self, rock: &Elasticity, pre: &PreStress) -> [f64; 3] {
-        let (p, q) = (self.piola(rock), self.carried(pre));
-        let (c, s) = (self.cos, self.sin);
-        let [f11, f12, f21, f22] = self.f;
-        let volume = f11 * f22 - f12 * f21;
-        [
-            p[0] * c - p[1] * s + (q[0] * f11 + q[1] * f12) / volume,
-            p[2] * s + p[3] * c + (q[2] * f21 + q[3] * f22) / volume,
-            p[0] * s + p[1] * c + (q[0] * f21 + q[1] * f22) / volume,
-        ]
-    }
-
-    /// Strain energy (J per m² of reference area; Eq. 8), with the work of the pre-stress.
-    pub fn energy(&self, rock: &Elasticity, pre: &PreStress) -> f64 {
-        let square = self.stretch().iter().map(|v| v * v).sum::<f64>();
-        let [f11, f12, f21, f22] = self.f;
-        let green = [f11 * f11 + f21 * f21 - 1.0, f12 * f12 + f22 * f22 - 1.0, f11 * f12 + f21 * f22];
-        let pre_work = 0.5 * (pre[0] * green[0] + pre[1] * green[1]) + pre[2] * green[2];
-        rock.mu * square + 0.5 * rock.lambda * (self.trace - 2.0).powi(2) + pre_work
     }
 
     /// R·t·Rᵀ of a symmetric tensor xx, yy, xy: from the axes that rotate with the element to global ones.

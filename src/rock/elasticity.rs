@@ -26,6 +26,11 @@ impl Elasticity {
         Self { lambda, mu: young / (2.0 * (1.0 + poisson)), density }
     }
 
+    /// Lamé's constants λ and μ (Pa).
+    pub fn constants(&self) -> [f64; 2] {
+        [self.lambda, self.mu]
+    }
+
     /// Confined modulus λ + 2μ (Pa).
     pub fn confined_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.mu

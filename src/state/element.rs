@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
+use enmm_lanes::{Kernel, LANES, Lanes, dispatch};
+
 use crate::cover::ElementId;
 use crate::geometry::Vector;
 use crate::mechanics::{
-    Deformation, Elasticity, PlasticStrain, PreStress, Strained, YieldSurface, YieldingRock, equivalent_strain,
+    Deformation, Elasticity, ElementRow, PlasticStrain, PreStress, Strained, YieldSurface, YieldingRock,
+    equivalent_strain,
 };
 
 use super::{Model, State};
@@ -16,7 +19,9 @@ const HANGING: f64 = 0.866_025_403_784_438_6;
 /// Means over the patches of whole blocks whose rock yields, and its yield surfaces. Empty where no rock
 /// yields.
 #[derive(Debug, Clone)]
-pub struct PatchMeans {
+pub struct PatchMeans<'a> {
+    /// Displacements of all covers (m).
+    displacement: &'a [Vector],
     /// First element.
     first: usize,
     /// Averaged elastic volume change of each (Eq. 58a).
@@ -36,14 +41,20 @@ impl Model {
     }
 
     /// Means over patches for the rock of whole blocks, which have the elements of a range.
-    pub fn patch_means(&self, state: &State, elements: Range<usize>) -> PatchMeans {
+    pub fn patch_means<'a>(&self, state: &'a State, elements: Range<usize>) -> PatchMeans<'a> {
+        self.patch_means_at(state, &state.displacement, elements)
+    }
+
+    /// The same at other displacements (m) than those of the state.
+    fn patch_means_at<'a>(&self, state: &State, displacement: &'a [Vector], elements: Range<usize>) -> PatchMeans<'a> {
         let first = elements.start;
         if state.plastic.is_empty() {
-            return PatchMeans { first, volume: Vec::new(), mean: Vec::new(), surfaces: Vec::new() };
+            let (volume, mean, surfaces) = Default::default();
+            return PatchMeans { displacement, first, volume, mean, surfaces };
         }
         let at = |e: ElementId| e.index() - first;
         let own = |e: ElementId| match self.strength_of(e) {
-            Some(rock) => [rock.own_volume(&self.deformation(e, &state.displacement), &state.plastic[e])],
+            Some(rock) => [rock.own_volume(&self.deformation(e, displacement), &state.plastic[e])],
             None => [0.0],
         };
         let averaged = |own: &[[f64; 1]], e| self.averaging.around(e, |e| own[at(e)]).unwrap_or_else(|| own[at(e)]);
@@ -54,11 +65,11 @@ impl Model {
         let mean = ElementId::range(elements).map(|e| averaged(&own, e)).collect();
         let time = state.stage_start + state.stage_step as f64 * self.dt + state.part;
         let surfaces = self.surfaces(state.drive.strength_factor_now(time)).collect();
-        PatchMeans { first, volume, mean, surfaces }
+        PatchMeans { displacement, first, volume, mean, surfaces }
     }
 
     /// The same for the block of one element.
-    fn patch_means_about(&self, state: &State, element: ElementId) -> PatchMeans {
+    fn patch_means_about<'a>(&self, state: &'a State, element: ElementId) -> PatchMeans<'a> {
         self.patch_means(state, self.covers.elements_of(self.covers.element_block[element]))
     }
 
@@ -120,7 +131,7 @@ impl Model {
         let strength = self.strength_of(element)?;
         let before = state.plastic.get(element.index())?;
         let surface = patches.surfaces[self.element_rock[element] as usize].as_ref()?;
-        let deformation = self.deformation(element, &state.displacement);
+        let deformation = self.deformation(element, patches.displacement);
         let at = Strained { deformation, mean: patches.mean[element.index() - patches.first][0] };
         let trial = surface.trial(&at, Some(&self.pre_stress_and_out(element)), before);
         let growth = self.flow(surface, element, trial).unwrap_or_default();
@@ -134,15 +145,16 @@ impl Model {
 
     /// The same from the means over the patches of its block.
     pub fn stress_under(&self, state: &State, element: ElementId, patches: &PatchMeans) -> [f64; 3] {
-        let at = self.deformation(element, &state.displacement);
-        let stress = at.stress(self.rock_of(element), &self.pre_stress_of(element));
-        match self.plastic_now(state, element, patches) {
-            Some((strength, at, [plastic, growth])) => {
-                let relief = strength.stress(&at, &plastic, &growth);
-                [0, 1, 2].map(|k| stress[k] + relief[k])
-            }
-            None => stress,
-        }
+        let at = self.deformation(element, patches.displacement);
+        let stress = at.stress(&self.rock_of(element).constants(), &self.pre_stress_of(element));
+        self.with_relief(state, element, patches, stress)
+    }
+
+    /// An elastic stress xx, yy, xy (Pa) of an element less what plastic strain takes off it.
+    fn with_relief(&self, state: &State, element: ElementId, patches: &PatchMeans, stress: [f64; 3]) -> [f64; 3] {
+        let Some((strength, at, [plastic, growth])) = self.plastic_now(state, element, patches) else { return stress };
+        let relief = strength.stress(&at, &plastic, &growth);
+        [0, 1, 2].map(|k| stress[k] + relief[k])
     }
 
     /// Plastic strain √(⅔ εp:εp) of an element at the displacements of a state; zero when it never yields.
@@ -156,16 +168,83 @@ impl Model {
         equivalent_strain(&[0, 1, 2, 3].map(|k| plastic[k] + growth[k]))
     }
 
-    /// Strain energy (J/m² of reference area) of an element with the plastic strain that the state holds.
-    pub fn strain_energy(&self, state: &State, element: ElementId, patches: &PatchMeans) -> f64 {
-        let at = self.deformation(element, &state.displacement);
-        let energy = at.energy(self.rock_of(element), &self.pre_stress_of(element));
-        match self.strength_of(element).zip(state.plastic.get(element.index())) {
-            Some((strength, plastic)) => {
-                let [volume] = patches.volume[element.index() - patches.first];
-                energy + strength.energy(&at, volume, &self.pre_stress_and_out(element), plastic)
+    /// Strain energy (J per m² of reference area) of an element beyond the elastic one, by its plastic strain.
+    fn plastic_energy(&self, state: &State, element: ElementId, patches: &PatchMeans) -> f64 {
+        let yielding = self.strength_of(element).zip(state.plastic.get(element.index()));
+        yielding.map_or(0.0, |(strength, plastic)| {
+            let at = self.deformation(element, patches.displacement);
+            let [volume] = patches.volume[element.index() - patches.first];
+            strength.energy(&at, volume, &self.pre_stress_and_out(element), plastic)
+        })
+    }
+
+    /// Shows stress xx, yy, xy (Pa, tension positive, global axes) and strain energy (J per m² of reference area) of
+    /// the elements of whole blocks, one by one in their order, at displacements (m).
+    pub fn each_stressed(
+        &self,
+        state: &State,
+        displacement: &[Vector],
+        elements: Range<usize>,
+        mut see: impl FnMut(ElementId, [f64; 3], f64),
+    ) {
+        let patches = self.patch_means_at(state, displacement, elements.clone());
+        let yields = !state.plastic.is_empty();
+        let see = |element, stress, energy| {
+            if yields {
+                let stress = self.with_relief(state, element, &patches, stress);
+                see(element, stress, energy + self.plastic_energy(state, element, &patches));
+            } else {
+                see(element, stress, energy);
             }
-            None => energy,
+        };
+        dispatch(ElasticElements { model: self, displacement, elements, see });
+    }
+}
+
+/// Elastic stress and strain energy of elements, eight at once.
+struct ElasticElements<'a, S> {
+    model: &'a Model,
+    displacement: &'a [Vector],
+    elements: Range<usize>,
+    see: S,
+}
+
+impl<S: FnMut(ElementId, [f64; 3], f64)> Kernel for ElasticElements<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let Range { start, end } = self.elements;
+        for first in (start..end).step_by(LANES) {
+            let eight = first..(first + LANES).min(end);
+            let ([xx, yy, xy], energy) = self.eight(lanes, eight.clone());
+            for (lane, e) in ElementId::range(eight).enumerate() {
+                (self.see)(e, [xx[lane], yy[lane], xy[lane]], energy[lane]);
+            }
         }
+    }
+}
+
+impl<S> ElasticElements<'_, S> {
+    /// Stress and energy of at most eight elements.
+    #[inline(always)]
+    fn eight<L: Lanes>(&self, lanes: L, elements: Range<usize>) -> ([[f64; LANES]; 3], [f64; LANES]) {
+        let Model { covers, rocks, element_rock, pre_stress, .. } = self.model;
+        let row = ElementRow::of_elastic(covers, elements.clone());
+        let at = row.deformation(lanes, self.displacement, &covers.gradients);
+        let (mut constants, mut pre) = ([[0.0; LANES]; 2], [[0.0; LANES]; 3]);
+        for (lane, rock) in element_rock[elements.clone()].iter().enumerate() {
+            [constants[0][lane], constants[1][lane]] = rocks[*rock as usize].constants();
+        }
+        for (lane, stress) in pre_stress.get(elements).unwrap_or_default().iter().enumerate() {
+            (0..3).for_each(|k| pre[k][lane] = stress[k]);
+        }
+        let (constants, pre) = (constants.map(|values| lanes.load(&values)), pre.map(|values| lanes.load(&values)));
+        let store = |values| {
+            let mut out = [0.0; LANES];
+            lanes.store(values, &mut out);
+            out
+        };
+        (at.stress(&constants, &pre).map(store), store(at.energy(&constants, &pre)))
     }
 }

@@ -25,10 +25,11 @@ pub use prepare::{begin_stage, prepare};
 pub use quiet::load_supports;
 pub use records::base_motion;
 pub use report::{
-    StepReport, block_motion, energies, mass_of_few, momentum, potential, speed_max, stored, strain, unbalanced,
+    StepReport, block_motion, energies, energies_at_velocities, mass_of_few, momentum, potential, speed_max, stored,
+    strain, unbalanced,
 };
 pub use settle::{settle_contacts, settle_supports};
-pub use substep::{StepInterval, Substep, Window};
+pub use substep::{StepInterval, Substep, Wanted, Window};
 
 use crate::contact::VertexEdge;
 use crate::state::{Model, State, Workspace};
@@ -60,7 +61,7 @@ pub enum Regime {
     },
 }
 
-/// Advances one internal step; with `report` the energies and the unbalanced ratio at its start are computed as well.
+/// Advances one internal step; the report holds what is `wanted` of its start.
 ///
 /// # Errors
 /// Fails on a non-finite state, a runaway block or a penetration beyond the limit; `state` is then of no further use.
@@ -69,9 +70,9 @@ pub fn advance(
     regime: Regime,
     state: &mut State,
     workspace: &mut Workspace,
-    report: bool,
+    wanted: Wanted,
 ) -> Result<StepReport, StepError> {
-    let outcome = cover(model, state, workspace, StepInterval { report, ..rest_of_step(model, regime, state) })?;
+    let outcome = cover(model, state, workspace, StepInterval { wanted, ..rest_of_step(model, regime, state) })?;
     state.stage_step += 1;
     state.step += 1;
     state.part = 0.0;
@@ -90,8 +91,9 @@ pub fn advance_part(
     state: &mut State,
     workspace: &mut Workspace,
     dt: f64,
+    wanted: Wanted,
 ) -> Result<StepReport, StepError> {
-    let outcome = cover(model, state, workspace, StepInterval { dt, ..rest_of_step(model, regime, state) })?;
+    let outcome = cover(model, state, workspace, StepInterval { dt, wanted, ..rest_of_step(model, regime, state) })?;
     state.part += dt;
     Ok(outcome)
 }
@@ -115,10 +117,10 @@ fn cover(
     Ok(outcome.report)
 }
 
-/// The rest of the internal step in progress, without a report.
+/// The rest of the internal step in progress, of whose start nothing is wanted.
 fn rest_of_step(model: &Model, regime: Regime, state: &State) -> StepInterval {
     let time = state.stage_start + state.stage_step as f64 * model.dt + state.part;
-    StepInterval { regime, time, dt: state.rest_of_step(model), report: false }
+    StepInterval { regime, time, dt: state.rest_of_step(model), wanted: Wanted::Nothing }
 }
 
 /// Energies and the unbalanced ratio that the next step will find at its start; nothing advances. With `serial` it
@@ -126,7 +128,7 @@ fn rest_of_step(model: &Model, regime: Regime, state: &State) -> StepInterval {
 pub fn outlook(model: &Model, regime: Regime, mut state: State, serial: bool) -> StepReport {
     let mut workspace = Workspace { serial, ..Workspace::default() };
     prepare(model, &state, &mut workspace);
-    let interval = StepInterval { report: true, ..rest_of_step(model, regime, &state) };
+    let interval = StepInterval { wanted: Wanted::Report, ..rest_of_step(model, regime, &state) };
     integrator_of(model).begin(model, &mut state, &mut workspace, interval)
 }
 

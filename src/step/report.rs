@@ -1,7 +1,7 @@
 //! Energies, momenta and what a step reports.
 
 use crate::contact::{BoltSegment, BoltState, Support};
-use crate::cover::{BlockId, ElementId};
+use crate::cover::BlockId;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, BlockCovers, MassMatrix};
 use crate::state::{Ledger, Model, State, Workspace};
@@ -96,18 +96,32 @@ pub(super) fn kinetic_of_most(model: &Model, mass_matrix: &MassMatrix, state: &S
 
 /// Strain energy (J/m) of all blocks that are there (Eqs. 8, 58).
 pub fn strain(model: &Model, state: &State) -> f64 {
+    strain_at(model, state, &state.displacement)
+}
+
+/// The same at other displacements (m).
+fn strain_at(model: &Model, state: &State, displacement: &[Vector]) -> f64 {
     let covers = &model.covers;
-    let patches = model.patch_means(state, 0..covers.element_count());
-    let of_element = |e: ElementId| covers.element_area[e] * model.strain_energy(state, e, &patches);
-    covers.elements().filter(|&e| !state.removed[covers.element_block[e]]).map(of_element).sum()
+    let mut strain = 0.0;
+    model.each_stressed(state, displacement, 0..covers.element_count(), |e, _, energy| {
+        if !state.removed[covers.element_block[e]] {
+            strain += covers.element_area[e] * energy;
+        }
+    });
+    strain
 }
 
 /// Potential energy (J/m) of gravity relative to the reference configuration.
 pub fn potential(model: &Model, state: &State) -> f64 {
+    potential_at(model, state, &state.displacement)
+}
+
+/// The same at other displacements (m).
+fn potential_at(model: &Model, state: &State, displacement: &[Vector]) -> f64 {
     let covers = &model.covers;
     (0..covers.cover_count())
         .filter(|&i| !state.removed[covers.cover_block[i]])
-        .map(|i| -model.mass_matrix.row_sum[i] * model.gravity.dot(&state.displacement[i]))
+        .map(|i| -model.mass_matrix.row_sum[i] * model.gravity.dot(&displacement[i]))
         .sum()
 }
 
@@ -138,10 +152,21 @@ pub(super) fn bolt_stored(model: &Model, state: &State) -> f64 {
 
 /// Energies (J/m) of a state at rest or in motion, without works: kinetic, strain, potential.
 pub fn energies(model: &Model, state: &State, mass_matrix: &MassMatrix) -> Ledger {
+    energies_at(model, state, &state.displacement, mass_matrix)
+}
+
+/// The same half an internal step ago, at the time of the velocities: the works of all steps so far belong to it.
+pub fn energies_at_velocities(model: &Model, state: &State, mass_matrix: &MassMatrix) -> Ledger {
+    let half = -0.5 * state.dt_last;
+    let displacement: Vec<Vector> = state.displacement.iter().zip(&state.velocity).map(|(u, v)| u + v * half).collect();
+    energies_at(model, state, &displacement, mass_matrix)
+}
+
+fn energies_at(model: &Model, state: &State, displacement: &[Vector], mass_matrix: &MassMatrix) -> Ledger {
     Ledger {
-        kinetic: integrator_of(model).kinetic(model, mass_matrix, &state.displacement, &state.velocity),
-        strain: strain(model, state),
-        potential: potential(model, state),
+        kinetic: integrator_of(model).kinetic(model, mass_matrix, displacement, &state.velocity),
+        strain: strain_at(model, state, displacement),
+        potential: potential_at(model, state, displacement),
         ..state.ledger
     }
 }
@@ -166,9 +191,9 @@ pub fn block_motion(
     block: BlockId,
 ) -> (Point, Vector, f64, f64) {
     let covers = block_covers(model, mass_matrix, &state.displacement, &state.velocity, block);
-    let (centre, velocity, spin) = mechanics::rigid_motion(&covers);
-    let kinetic = if mass_matrix.fixed[block] { 0.0 } else { mechanics::kinetic_energy(&covers) };
-    (centre, velocity, spin, kinetic)
+    let (motion, kinetic) = mechanics::motion_with_energy(&covers);
+    let (centre, velocity, spin) = motion;
+    (centre, velocity, spin, if mass_matrix.fixed[block] { 0.0 } else { kinetic })
 }
 
 /// One block's slices: for its energy, momentum and damping.

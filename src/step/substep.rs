@@ -4,6 +4,19 @@ use crate::state::State;
 
 use super::Regime;
 
+/// What is wanted of the start of a step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Wanted {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// What follows from the forces of the step alone: the unbalanced ratio, and the energy stored in contacts,
+    /// supports and bolts.
+    Forces,
+    /// The whole report.
+    Report,
+}
+
 /// Simulated time that an integrator is asked to cover.
 #[derive(Debug, Clone, Copy)]
 pub struct StepInterval {
@@ -13,8 +26,8 @@ pub struct StepInterval {
     pub time: f64,
     /// Length (s).
     pub dt: f64,
-    /// Whether a report of the start is wanted.
-    pub report: bool,
+    /// What is wanted of the start.
+    pub wanted: Wanted,
 }
 
 /// A sub-step: what its stages know of it.
@@ -30,8 +43,8 @@ pub struct Substep {
     pub kick: f64,
     /// When they act.
     pub window: Window,
-    /// Whether a report of the start is wanted.
-    pub report: bool,
+    /// What is wanted of the start.
+    pub wanted: Wanted,
     /// Whether it keeps to the calling thread; the bits are the same.
     pub serial: bool,
 }
@@ -47,9 +60,9 @@ pub struct Window {
 
 impl Substep {
     /// The sub-step over a whole interval, after one of `before` (s).
-    pub fn new(StepInterval { regime, time, dt, report }: StepInterval, before: f64, serial: bool) -> Self {
+    pub fn new(StepInterval { regime, time, dt, wanted }: StepInterval, before: f64, serial: bool) -> Self {
         let window = Window { from: time - 0.5 * before, to: time + 0.5 * dt };
-        Self { regime, time, dt, kick: 0.5 * (before + dt), window, report, serial }
+        Self { regime, time, dt, kick: 0.5 * (before + dt), window, wanted, serial }
     }
 
     /// Share of gravity and of inputs that acts at its start.

@@ -21,7 +21,7 @@ pub fn assert_ledger(report: &StepReport) {
 /// Stress xx, yy, xy of every element under the displacements of a state.
 pub fn stresses(simulation: &Simulation, state: &State) -> Vec<[f64; 3]> {
     let slope = simulation.model();
-    let of = |e| slope.deformation(e, &state.displacement).stress(slope.rock_of(e), &[0.0; 3]);
+    let of = |e| slope.deformation(e, &state.displacement).stress(&slope.rock_of(e).constants(), &[0.0; 3]);
     slope.covers.elements().map(of).collect()
 }
 

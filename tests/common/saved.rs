@@ -23,4 +23,5 @@ pub struct Progress {
     pub changed: bool,
     pub interpolation: Interpolation,
     pub told: f64,
+    pub forces: Option<[f64; 3]>,
 }

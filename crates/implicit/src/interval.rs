@@ -8,7 +8,7 @@ use enmm::internals::contact::VertexEdge;
 use enmm::internals::mechanics::MassMatrix;
 use enmm::internals::state::{Buffers, Model, State, Workspace};
 use enmm::internals::step::{
-    Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Window, acceleration, base_motion,
+    Integrator, Reach, Regime, StepInterval, StepOutcome, StepReport, Wanted, Window, acceleration, base_motion,
     delay_friction, find_contacts, load_supports, locate, push_forces, ramp, search,
 };
 
@@ -102,10 +102,11 @@ fn with_buffers<R>(
     model: &Model,
     state: &mut State,
     workspace: &mut Workspace,
-    StepInterval { regime, time, report, .. }: StepInterval,
+    StepInterval { regime, time, wanted, .. }: StepInterval,
     work: impl FnOnce(&mut ImplicitStep) -> R,
 ) -> R {
     let mut buffers = taken(workspace);
+    let report = wanted == Wanted::Report;
     let step = ImplicitStep { model, state, workspace, buffers: &mut buffers, regime, time, report, singular: false };
     let result = work(&mut { step });
     workspace.of_integrator = Some(buffers);

@@ -1,7 +1,7 @@
 //! A sub-step, and how inertia enters it.
 
 use enmm::internals::state::{Model, State, Workspace};
-use enmm::internals::step::{Regime, StepInterval, Substep};
+use enmm::internals::step::{Regime, StepInterval, Substep, Wanted};
 
 use super::buffers::ImplicitBuffers;
 
@@ -32,7 +32,8 @@ impl ImplicitStep<'_> {
     /// The sub-step of `dt` (s) that begins now, as the stages of the engine know it.
     pub fn substep(&self, dt: f64) -> Substep {
         let Self { regime, time, report, .. } = *self;
-        Substep::new(StepInterval { regime, time, dt, report }, self.state.dt_last, self.workspace.serial)
+        let wanted = if report { Wanted::Report } else { Wanted::Nothing };
+        Substep::new(StepInterval { regime, time, dt, wanted }, self.state.dt_last, self.workspace.serial)
     }
 }
 

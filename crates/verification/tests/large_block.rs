@@ -4,8 +4,8 @@
 use crate::common::simulation;
 use enmm::geometry::Vector;
 use enmm::internals::step::{Regime, advance, prepare};
-use enmm::model::State;
 use enmm::model::tables::{CoverId, Model, Workspace};
+use enmm::model::{State, Wanted};
 use enmm_verification::bench::continuum_case;
 
 /// Height (m) below which nothing is displaced, so that what holds the base plays no part.
@@ -47,7 +47,7 @@ fn kicked(slope: &Model, start: &State, displacement: impl Fn(usize) -> Vector) 
     let before = state.clone();
     let mut workspace = Workspace::default();
     prepare(slope, &state, &mut workspace);
-    advance(slope, Regime::Dynamic { damping: 0.0 }, &mut state, &mut workspace, false).expect("a step");
+    advance(slope, Regime::Dynamic { damping: 0.0 }, &mut state, &mut workspace, Wanted::Nothing).expect("a step");
     (state.velocity, before)
 }
 

@@ -3,7 +3,9 @@
 use crate::contact::{BoltRow, BoltState, ContactState, Frames};
 use crate::geometry::Vector;
 use crate::mechanics::{self, MassMatrix};
-use crate::state::{ChunkSums, Ledger, Model, MotionBuffers, SelectionBuffers, State, SweepBuffers, Workspace};
+use crate::state::{
+    BoltEnergies, ChunkSums, Ledger, Model, MotionBuffers, SelectionBuffers, State, SweepBuffers, Workspace,
+};
 
 use super::bonds::{Bonds, begin_sections, has_bonds};
 use super::chunk_runs::{self, ChunkSlices};
@@ -13,7 +15,7 @@ use super::kick::acceleration;
 use super::settle::{settle_contacts, settle_supports};
 use super::turn::turn;
 use super::works::{contact_works, external_work, extra};
-use super::{Regime, StepOutcome, StepReport, Substep, guard, report};
+use super::{Regime, StepOutcome, StepReport, Substep, Wanted, guard, report};
 
 /// Ends a sub-step; the outcome holds the report of its start when one is wanted.
 pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace: &mut Workspace) -> StepOutcome {
@@ -35,12 +37,16 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     works.damping = totals.damping;
     let forces = (extra(model, state, step), totals.row_sum);
     works.external_work += external_work(step.kick, velocities, forces, &workspace.load_force);
-    let report = if step.report { start_report(model, state, step, &works, workspace) } else { StepReport::default() };
+    let report = match step.wanted {
+        Wanted::Nothing => StepReport::default(),
+        Wanted::Forces => report_of_forces(model, state, step, workspace),
+        Wanted::Report => start_report(model, state, step, &works, workspace),
+    };
     let Workspace { mass_matrix, motion, sums, frames, selection, supports, sweep, .. } = workspace;
     keep_found(model, state, frames, selection);
     keep_stage_force(model, state, step, mass_matrix, motion);
     move_columns(step, &motion.columns, &mut state.columns);
-    if step.report {
+    if step.wanted != Wanted::Nothing {
         drift(step.dt, &motion.predicted, &mut state.displacement, sums);
     }
     turn(model, step, mass_matrix, &sweep.push, motion, &mut state.displacement, sums);
@@ -85,7 +91,7 @@ fn finish(
         damping,
         movable,
         exposed,
-        moves_for: if step.report { 0.0 } else { step.dt },
+        moves_for: if step.wanted == Wanted::Nothing { step.dt } else { 0.0 },
         is_loaded,
         grain: chunk_runs::grain(step.serial),
     };
@@ -132,29 +138,37 @@ fn each_change(
 
 /// Energies at the start of this sub-step and the unbalanced ratio.
 fn start_report(model: &Model, state: &State, step: &Substep, works: &Ledger, workspace: &mut Workspace) -> StepReport {
-    let Workspace { mass_matrix, motion, load_force, .. } = workspace;
-    let unbalanced = unbalanced(model, state, step, load_force, mass_matrix, motion);
+    let of_forces = report_of_forces(model, state, step, workspace);
+    let Workspace { mass_matrix, motion, .. } = workspace;
     let kinetic = |velocity: &[Vector]| report::kinetic(model, mass_matrix, &state.displacement, velocity);
     let mut ledger = state.ledger;
     ledger.add_works(works, 0.5);
     ledger.kinetic = 0.5 * (kinetic(&state.velocity) + kinetic(&motion.predicted));
     ledger.strain = report::strain(model, state);
     ledger.potential = report::potential(model, state);
-    ledger.stored = report::stored(model, state, workspace);
-    ledger.bolts.stored = report::bolt_stored(model, state);
+    ledger.stored = of_forces.ledger.stored;
+    ledger.bolts.stored = of_forces.ledger.bolts.stored;
     let contacts = workspace.contacts.iter();
     let count = |which: ContactState| contacts.clone().filter(|c| c.history.state == which).count() as u32;
     StepReport {
-        time: step.time,
-        dt: step.dt,
         ledger,
-        unbalanced,
         kinetic_of_most: report::kinetic_of_most(model, &workspace.mass_matrix, state, &workspace.motion.predicted),
         locked: count(ContactState::Lock),
         slipping: count(ContactState::Slip),
         penetration_max: contacts.clone().map(|c| c.penetration()).fold(0.0, f64::max),
         speed_max: report::speed_max(model, state),
+        ..of_forces
     }
+}
+
+/// The unbalanced ratio and the energies that the forces of this sub-step store.
+fn report_of_forces(model: &Model, state: &State, step: &Substep, workspace: &mut Workspace) -> StepReport {
+    let Workspace { mass_matrix, motion, load_force, .. } = workspace;
+    let unbalanced = unbalanced(model, state, step, load_force, mass_matrix, motion);
+    let stored = report::stored(model, state, workspace);
+    let bolts = BoltEnergies { stored: report::bolt_stored(model, state), ..BoltEnergies::default() };
+    let ledger = Ledger { stored, bolts, ..Ledger::default() };
+    StepReport { time: step.time, dt: step.dt, ledger, unbalanced, ..StepReport::default() }
 }
 
 /// ‖m·dv/dt‖ over ‖applied force‖ (Eq. 19).

@@ -23,7 +23,7 @@ use crate::state::{Counters, Model, State, Workspace};
 use super::contacts::{self, Reach};
 use super::friction::delay_friction;
 use super::integrator::{Integrator, StepOutcome};
-use super::{Regime, StepInterval, StepReport, Substep, applied, bonds, guard, quiet, records, report, settle};
+use super::{Regime, StepInterval, StepReport, Substep, Wanted, applied, bonds, guard, quiet, records, report, settle};
 
 use columns::kick_columns;
 use commit::commit;
@@ -127,7 +127,7 @@ fn cover(
         state.counters.halved += 1;
         let half = StepInterval { dt: 0.5 * step.dt, ..interval };
         let first = cover(model, state, workspace, half, halvings + 1);
-        let rest = StepInterval { time: first.end, report: false, ..half };
+        let rest = StepInterval { time: first.end, wanted: Wanted::Nothing, ..half };
         return StepOutcome { report: first.report, ..cover(model, state, workspace, rest, halvings + 1) };
     }
     count(model, step.dt, &swept, &mut state.counters);

@@ -161,7 +161,7 @@ fn stress_error(simulation: &Simulation, beam: &Beam, q: f64) -> f64 {
             continue;
         }
         let deformation = slope.deformation(e, &simulation.state().displacement);
-        let computed = deformation.stress(slope.rock_of(e), &[0.0; 3])[0];
+        let computed = deformation.stress(&slope.rock_of(e).constants(), &[0.0; 3])[0];
         sum += covers.element_area[e] * (computed - beam.uniform_stress(q, x, p.y)).powi(2);
         area += covers.element_area[e];
     }

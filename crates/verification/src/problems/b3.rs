@@ -88,7 +88,8 @@ fn text(setup: &Setup, size: f64) -> String {
 fn stresses(simulation: &Simulation) -> Vec<[f64; 2]> {
     let slope = simulation.model();
     let of = |e| {
-        let stress = slope.deformation(e, &simulation.state().displacement).stress(slope.rock_of(e), &[0.0; 3]);
+        let stress =
+            slope.deformation(e, &simulation.state().displacement).stress(&slope.rock_of(e).constants(), &[0.0; 3]);
         [stress[0], stress[1]]
     };
     slope.covers.elements().map(of).collect()

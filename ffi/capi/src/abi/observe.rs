@@ -18,9 +18,8 @@ use crate::types::*;
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn enmm_block_count(model: *mut enmm_model, count: *mut usize) -> enmm_status {
     with_model(model.addr(), |model| {
-        let own = model.inner.simulation().model().covers.block_count();
         // SAFETY: promised by the host.
-        unsafe { pointers::write("count", count, own) }
+        unsafe { pointers::write("count", count, model.block_count()) }
     })
 }
 
@@ -41,7 +40,38 @@ pub unsafe extern "C" fn enmm_get_block_states(
     written: *mut usize,
 ) -> enmm_status {
     // SAFETY: promised by the host.
-    with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.block_states(), out, capacity, written) })
+    with_model(model.addr(), |model| unsafe {
+        pointers::fill_made(model.block_count(), || model.block_states().collect(), out, capacity, written)
+    })
+}
+
+/// Returns the states of all blocks, by id, in the memory of the model: nothing is copied.
+///
+/// `*first` gets the address of the first one, `*stride` the distance (bytes) from one to the next, which is
+/// sizeof(enmm_block_state) of the library and so may be more than that of the header, and `*count` their number. The
+/// values are worked out at the first look after a step. They may be read until the next call with the model, by
+/// whatever thread, and must not be changed.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_view_block_states(
+    model: *mut enmm_model,
+    first: *mut *const enmm_block_state,
+    stride: *mut usize,
+    count: *mut usize,
+) -> enmm_status {
+    with_model(model.addr(), |model| {
+        let states = model.view_block_states();
+        // SAFETY: promised by the host.
+        unsafe {
+            pointers::write("first", first, states.as_ptr())?;
+            pointers::write("stride", stride, size_of::<enmm_block_state>())?;
+            pointers::write("count", count, states.len())
+        }
+    })
 }
 
 /// Writes energies and works. `out->struct_size` must be set.
@@ -68,7 +98,8 @@ pub unsafe extern "C" fn enmm_get_totals(model: *mut enmm_model, out: *mut enmm_
     with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.totals(), out) })
 }
 
-/// Writes the contacts with the forces of the last internal step, those without force included.
+/// Writes the contacts of the last internal step with its forces, at their places now, those without force included.
+/// Before the first step of a stage they are those that this step will find, without forces.
 ///
 /// Buffer and errors as enmm_get_block_states.
 ///
@@ -82,7 +113,9 @@ pub unsafe extern "C" fn enmm_get_contacts(
     written: *mut usize,
 ) -> enmm_status {
     // SAFETY: promised by the host.
-    with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.contacts(), out, capacity, written) })
+    with_model(model.addr(), |model| unsafe {
+        pointers::fill_made(model.inner.contact_count(), || model.contacts(), out, capacity, written)
+    })
 }
 
 /// Writes the events from index `first` on (0: all since the start), in the order of time. A return to a saved state

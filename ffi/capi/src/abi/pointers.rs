@@ -125,6 +125,27 @@ pub unsafe fn fill_structs<T: Growing>(items: &[T], out: *mut T, capacity: usize
     Ok(())
 }
 
+/// Writes `count` structures that are made for it, or their number without making them.
+///
+/// # Safety
+/// As [`fill_structs`].
+pub unsafe fn fill_made<T: Growing>(
+    count: usize,
+    make: impl FnOnce() -> Vec<T>,
+    out: *mut T,
+    capacity: usize,
+    written: *mut usize,
+) -> Outcome {
+    // SAFETY: promised by the caller.
+    unsafe {
+        if announce(count, out.is_null(), capacity, written)? {
+            fill_structs(&make(), out, capacity, written)
+        } else {
+            Ok(())
+        }
+    }
+}
+
 /// Writes the first `size` bytes of a structure that both sides know, and `size` itself.
 ///
 /// # Safety

@@ -10,6 +10,7 @@ use enmm_io::{LoadedCase, load_case, parse_case};
 
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
+use crate::numbers::enmm_block_state;
 use crate::types::{enmm_interpolation, enmm_log_level, enmm_status, enmm_step_info};
 
 /// Models that are alive.
@@ -82,6 +83,8 @@ pub struct Model {
     pub inner: Cosimulation,
     log: Log,
     warnings: Vec<String>,
+    /// States of the blocks that the host looks at in place.
+    pub(super) viewed: Vec<enmm_block_state>,
 }
 
 /// Messages of one call, and where they go.
@@ -142,7 +145,7 @@ pub fn check_case(toml: &str, base_dir: &str) -> Result<(), Failure> {
 fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
     let inner = loaded.cosimulation()?;
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
-    let model = Model { inner, log: Log::default(), warnings };
+    let model = Model { inner, log: Log::default(), warnings, viewed: Vec::new() };
     MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0) })
 }
 

@@ -2,9 +2,9 @@
 
 use engine::cosimulation::{EventKind, PortKind};
 use engine::geometry::{Point, polygon};
-use engine::model::ContactState;
 use engine::model::case::key::list;
-use engine::model::tables::{BlockId, VertexEdge};
+use engine::model::tables::BlockId;
+use engine::model::{ContactState, ContactView};
 
 use super::failure::{Failure, Outcome};
 use super::model::Model;
@@ -13,15 +13,29 @@ use crate::types::*;
 
 impl Model {
     /// The state of every block, by id.
-    pub fn block_states(&self) -> Vec<enmm_block_state> {
-        let failed = &self.inner.simulation().state().events.failed;
-        let states = self.inner.block_states();
-        states.iter().map(|state| enmm_block_state::new(state, failed[state.id as usize])).collect()
+    pub fn block_states(&self) -> impl Iterator<Item = enmm_block_state> + '_ {
+        let simulation = self.inner.simulation();
+        let failed = &simulation.state().events.failed;
+        simulation.blocks().iter().map(|state| enmm_block_state::new(state, failed[state.id as usize]))
+    }
+
+    /// Number of blocks.
+    pub fn block_count(&self) -> usize {
+        self.inner.simulation().state().removed.len()
+    }
+
+    /// The states of the blocks in memory of the model, until the next call.
+    pub fn view_block_states(&mut self) -> &[enmm_block_state] {
+        let mut viewed = std::mem::take(&mut self.viewed);
+        viewed.clear();
+        viewed.extend(self.block_states());
+        self.viewed = viewed;
+        &self.viewed
     }
 
     /// Energies and works.
     pub fn energies(&self) -> enmm_energies {
-        enmm_energies::from(&self.inner.totals().ledger)
+        enmm_energies::from(&self.inner.energies())
     }
 
     /// Sums and extremes.
@@ -31,32 +45,25 @@ impl Model {
 
     /// All contacts.
     pub fn contacts(&self) -> Vec<enmm_contact> {
-        let simulation = self.inner.simulation();
-        let (places, boundary) = (simulation.positions(), &simulation.model().boundary);
-        let contacts = self.inner.contacts();
-        let of = |contact: &VertexEdge| {
-            let (history, [node_block, edge_block]) = (&contact.history, contact.blocks(boundary));
-            let position = places[contact.point];
-            enmm_contact {
-                struct_size: size_of::<enmm_contact>(),
-                state: match history.state {
-                    ContactState::Open => enmm_contact_state::ENMM_CONTACT_OPEN,
-                    ContactState::Slip => enmm_contact_state::ENMM_CONTACT_SLIP,
-                    ContactState::Lock => enmm_contact_state::ENMM_CONTACT_LOCK,
-                },
-                law: contact.law.number(),
-                node_block: node_block.number(),
-                edge_block: edge_block.number(),
-                position_x: position.x,
-                position_y: position.y,
-                normal_x: contact.normal.x,
-                normal_y: contact.normal.y,
-                length: contact.length,
-                normal_stress: -history.normal_force / contact.length,
-                shear_stress: history.shear_force / contact.length,
-            }
+        let of = |contact: &ContactView| enmm_contact {
+            struct_size: size_of::<enmm_contact>(),
+            state: match contact.state {
+                ContactState::Open => enmm_contact_state::ENMM_CONTACT_OPEN,
+                ContactState::Slip => enmm_contact_state::ENMM_CONTACT_SLIP,
+                ContactState::Lock => enmm_contact_state::ENMM_CONTACT_LOCK,
+            },
+            law: contact.law.number(),
+            node_block: contact.blocks[0].number(),
+            edge_block: contact.blocks[1].number(),
+            position_x: contact.position.x,
+            position_y: contact.position.y,
+            normal_x: contact.normal.x,
+            normal_y: contact.normal.y,
+            length: contact.length,
+            normal_stress: -contact.normal_force / contact.length,
+            shear_stress: contact.shear_force / contact.length,
         };
-        contacts.iter().map(of).collect()
+        self.inner.contact_views().iter().map(of).collect()
     }
 
     /// Events from the one of index `first` on.

@@ -1,7 +1,7 @@
 //! Getters. What the model computes for all outputs at once is kept until it moves.
 
 use enmm::cosimulation::{EventKind, PORT_QUANTITIES, PortState, TOTALS, Totals};
-use enmm::model::{BLOCK_QUANTITIES, BlockState, ENERGIES, MONITOR_QUANTITIES};
+use enmm::model::{BLOCK_QUANTITIES, ENERGIES, MONITOR_QUANTITIES};
 
 use crate::log::Status;
 use crate::phase::{Call, Phase};
@@ -12,16 +12,14 @@ use super::{Failure, Instance};
 /// Values that have been computed since the model last moved.
 #[derive(Debug, Default)]
 pub(super) struct Cache {
-    blocks: Option<Vec<BlockState>>,
     totals: Option<Totals>,
-    ports: Vec<Option<PortState>>,
+    ports: Vec<[Option<PortState>; 2]>,
     snapshot: Vec<u8>,
 }
 
 impl Cache {
     /// Forgets everything but the bytes that the importer may still read.
     pub(super) fn clear(&mut self) {
-        self.blocks = None;
         self.totals = None;
         self.ports.clear();
     }
@@ -115,13 +113,13 @@ impl Instance {
     fn read(&mut self, quantity: Quantity, values: &mut [f64]) {
         match quantity {
             Quantity::Time => values[0] = self.time,
-            Quantity::Port(k, place) => values[0] = (PORT_QUANTITIES[place].get)(self.port(k)),
+            Quantity::Port(k, place) => values[0] = (PORT_QUANTITIES[place].get)(self.port(k, place)),
             Quantity::Monitor(k, place) => {
                 values[0] = (MONITOR_QUANTITIES[place].get)(&self.model.simulation().monitor(k));
             }
             Quantity::Total(total) => values[0] = self.total(total),
             Quantity::Blocks(place) => {
-                let states = self.cache.blocks.get_or_insert_with(|| self.model.block_states());
+                let states = self.model.simulation().blocks();
                 let get = BLOCK_QUANTITIES[place].get;
                 values.iter_mut().zip(states).for_each(|(value, state)| *value = get(state));
             }
@@ -142,10 +140,15 @@ impl Instance {
         }
     }
 
-    fn port(&mut self, k: usize) -> &PortState {
-        let ports = &mut self.cache.ports;
-        ports.resize(self.model.ports().len(), None);
-        ports[k].get_or_insert_with(|| self.model.port_state(k))
+    /// State of a port for one of its quantities: stresses are worked out only where they are asked for.
+    fn port(&mut self, k: usize, place: usize) -> &PortState {
+        let (ports, model) = (&mut self.cache.ports, &self.model);
+        ports.resize(model.ports().len(), [None; 2]);
+        if PORT_QUANTITIES[place].name.starts_with("stress") {
+            ports[k][1].get_or_insert_with(|| model.port_state(k))
+        } else {
+            ports[k][0].get_or_insert_with(|| model.port_motion(k))
+        }
     }
 
     fn total(&mut self, total: Total) -> f64 {

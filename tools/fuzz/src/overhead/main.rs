@@ -6,6 +6,7 @@
 
 mod host;
 mod model;
+mod reads;
 
 use std::io::Write;
 use std::sync::LazyLock;
@@ -35,6 +36,7 @@ fn main() {
     for model in model::models() {
         threads(&model);
     }
+    reads::table();
 }
 
 /// A line for whoever asked; a closed pipe is no error.
