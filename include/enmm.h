@@ -74,6 +74,11 @@
 #define ENMM_NO_BLOCK UINT32_MAX
 
 /**
+ * Flag of enmm_state_restore_with and enmm_state_deserialize_with: the model keeps the parameters that it has.
+ */
+#define ENMM_KEEP_PARAMETERS 1
+
+/**
  * Result of a call. When it is not ENMM_OK, the call has changed nothing, and enmm_last_error() returns the fault, the
  * limit and the remedy.
  */
@@ -1017,6 +1022,100 @@ enmm_status enmm_set_interpolation(struct enmm_model *model, int32_t mode);
 enmm_status enmm_get_interpolation(struct enmm_model *model, int32_t *mode);
 
 /**
+ * Returns the number of parameters: properties of the case that have a name and can be set. It never changes.
+ *
+ * Names are such as "joint_law.weak.friction", "rock.granite.young", "damping", "water.density" and
+ * "bolt.anchor.active". Values are in SI units, angles in radians. enmm_parameter_range tells which of them may change
+ * after the start.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_parameter_count(struct enmm_model *model, size_t *count);
+
+/**
+ * Returns the index of the parameter of this name.
+ *
+ * Errors: ENMM_NOT_FOUND, with the names that there are; ENMM_INVALID_ARGUMENT for a text that is not UTF-8,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_find_parameter(struct enmm_model *model, const char *name, uint32_t *parameter);
+
+/**
+ * Writes the name of a parameter in UTF-8.
+ *
+ * `*written` gets the number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only
+ * that number.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a parameter that does not exist, ENMM_BUFFER_TOO_SMALL, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_parameter_name(struct enmm_model *model,
+                                uint32_t parameter,
+                                char *out,
+                                size_t capacity,
+                                size_t *written);
+
+/**
+ * Writes the SI unit of a parameter, such as "Pa" or "rad"; an empty text for a number without one.
+ *
+ * Buffer and errors as enmm_parameter_name.
+ */
+enmm_status enmm_parameter_unit(struct enmm_model *model,
+                                uint32_t parameter,
+                                char *out,
+                                size_t capacity,
+                                size_t *written);
+
+/**
+ * Writes what a parameter means, in words.
+ *
+ * Buffer and errors as enmm_parameter_name.
+ */
+enmm_status enmm_parameter_description(struct enmm_model *model,
+                                       uint32_t parameter,
+                                       char *out,
+                                       size_t capacity,
+                                       size_t *written);
+
+/**
+ * Returns the least and the greatest value of a parameter, and whether it is tunable: 1 for one that may change at any
+ * time, 0 for one that is fixed after the start. Pointers may be NULL where the value is of no interest.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a parameter that does not exist.
+ */
+enmm_status enmm_parameter_range(struct enmm_model *model,
+                                 uint32_t parameter,
+                                 double *low,
+                                 double *high,
+                                 int32_t *tunable);
+
+/**
+ * Returns the value of a parameter now. Strengths are those at time 0 until then, and after it those that hold.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a parameter that does not exist, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_parameter(struct enmm_model *model, uint32_t parameter, double *value);
+
+/**
+ * Sets a parameter.
+ *
+ * Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of the
+ * value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it. Values
+ * are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made active is
+ * installed at its length of now with its pretension.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a parameter that does not exist, a value out of its range, or one that is fixed
+ * after the start; ENMM_INVALID_CASE when no model can be built with the value. Nothing has changed then.
+ */
+enmm_status enmm_set_parameter(struct enmm_model *model, uint32_t parameter, double value);
+
+/**
+ * Sets `n` parameters at once: all, or none when one value is refused. Before the start they cost one build.
+ *
+ * Errors: as enmm_set_parameter, for the first one that is refused; ENMM_NULL_ARGUMENT when `n` is not 0.
+ */
+enmm_status enmm_set_parameters(struct enmm_model *model, const uint32_t *parameters, size_t n, const double *values);
+
+/**
  * Returns the number of blocks, excavated ones included. It never changes.
  *
  * Errors: ENMM_NULL_ARGUMENT.
@@ -1037,6 +1136,21 @@ enmm_status enmm_get_block_states(struct enmm_model *model,
                                   size_t *written);
 
 /**
+ * Returns the states of all blocks, by id, in the memory of the model: nothing is copied.
+ *
+ * `*first` gets the address of the first one, `*stride` the distance (bytes) from one to the next, which is
+ * sizeof(enmm_block_state) of the library and so may be more than that of the header, and `*count` their number. The
+ * values are worked out at the first look after a step. They may be read until the next call with the model, by
+ * whatever thread, and must not be changed.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_view_block_states(struct enmm_model *model,
+                                   const struct enmm_block_state **first,
+                                   size_t *stride,
+                                   size_t *count);
+
+/**
  * Writes energies and works. `out->struct_size` must be set.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
@@ -1051,7 +1165,8 @@ enmm_status enmm_get_energies(struct enmm_model *model, struct enmm_energies *ou
 enmm_status enmm_get_totals(struct enmm_model *model, struct enmm_totals *out);
 
 /**
- * Writes the contacts with the forces of the last internal step, those without force included.
+ * Writes the contacts of the last internal step with its forces, at their places now, those without force included.
+ * Before the first step of a stage they are those that this step will find, without forces.
  *
  * Buffer and errors as enmm_get_block_states.
  */
@@ -1177,6 +1292,16 @@ enmm_status enmm_state_save(struct enmm_model *model, struct enmm_state **out);
 enmm_status enmm_state_restore(struct enmm_model *model, struct enmm_state *state);
 
 /**
+ * Returns the model to a saved state in a way that `flags` choose: 0 as enmm_state_restore does, ENMM_KEEP_PARAMETERS
+ * for a state of a model that may differ in values of parameters (see enmm_parameter_count), while this one keeps its
+ * own.
+ *
+ * Errors: as enmm_state_restore; ENMM_INVALID_ARGUMENT for other flags, or when the parameters have made the internal
+ * step another one.
+ */
+enmm_status enmm_state_restore_with(struct enmm_model *model, struct enmm_state *state, uint32_t flags);
+
+/**
  * Frees a state. NULL does nothing.
  *
  * Errors: ENMM_DEAD_HANDLE.
@@ -1209,6 +1334,18 @@ enmm_status enmm_state_deserialize(struct enmm_model *model,
                                    const uint8_t *bytes,
                                    size_t size,
                                    struct enmm_state **out);
+
+/**
+ * Makes a state from bytes in a way that `flags` choose: 0 as enmm_state_deserialize does, ENMM_KEEP_PARAMETERS for
+ * bytes of a model that may differ in values of parameters; the state has those of this model.
+ *
+ * Errors: as enmm_state_deserialize and enmm_state_restore_with.
+ */
+enmm_status enmm_state_deserialize_with(struct enmm_model *model,
+                                        const uint8_t *bytes,
+                                        size_t size,
+                                        uint32_t flags,
+                                        struct enmm_state **out);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -47,7 +47,12 @@ const DAMAGES: [Damage; 30] = [
     ("dt_last", |w| w.state.dt_last = -1.0),
     ("stage_step", |w| w.state.stage_step = u64::MAX),
     ("support", |w| w.state.support_force.push(0.0)),
-    ("laws[0] is another", |w| w.state.laws[0].friction = f64::NAN),
+    ("laws[0].friction", |w| w.state.laws[0].friction = f64::NAN),
+    ("joint_law.joint.friction", |w| {
+        let friction = 20f64.to_radians();
+        w.parameters.iter_mut().filter(|value| **value == friction).for_each(|value| *value = f64::NAN);
+    }),
+    ("length of parameters", |w| w.parameters.push(0.0)),
     ("law_switch[0]", |w| w.state.law_switch[0] = LawId::new(99)),
     ("drive.to.gravity.y", |w| w.state.drive.to.gravity.y = f64::INFINITY),
     ("drive.from.block_moment[1]", |w| w.state.drive.from.block_moment[1] = f64::NAN),

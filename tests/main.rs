@@ -69,6 +69,7 @@ mod runaway;
 mod sliding_converges;
 mod small_displacements;
 mod softening;
+mod tuned_parameters;
 mod vertex_rule;
 mod water_in_joints;
 mod water_pressure;

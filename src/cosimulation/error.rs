@@ -4,6 +4,8 @@ use crate::model::case::Invalid;
 use crate::state::bytes::BytesError;
 use crate::step::StepError;
 
+use super::ParameterError;
+
 /// Why a call did nothing.
 #[derive(Debug, thiserror::Error)]
 pub enum CosimulationError {
@@ -22,6 +24,9 @@ pub enum CosimulationError {
         /// Remedy.
         remedy: &'static str,
     },
+    /// A parameter cannot have a value.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// A communication step does not begin where the model stands.
     #[error("t: is {given} s, must be the time of the model, {own} s; step from there, or restore a saved state")]
     Time {

@@ -8,6 +8,7 @@ mod observe;
 mod parameter;
 mod saved;
 mod threads;
+mod tuning;
 
 pub use crate::state::{Event, EventKind, PortKind, Quantity};
 pub use error::CosimulationError;
@@ -28,6 +29,7 @@ use crate::model::{BlockState, Simulation, SlopeFailure};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM, Wanted};
 use threads::Pool;
+use tuning::Parameters;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,6 +88,7 @@ impl Forces {
 pub struct Cosimulation {
     simulation: Simulation,
     hash: String,
+    parameters: Parameters,
     /// State from which the part of an internal step was taken, when the model stands between two grid points.
     grid: Option<Box<State>>,
     progress: Progress,
@@ -106,8 +109,18 @@ impl Cosimulation {
         let hash = case.fingerprint()?;
         let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
-        let backup = Saved::of(simulation.state(), &hash);
-        Ok(Self { simulation, hash, grid: None, progress: Progress::default(), backup, serial: 0, pool: None })
+        let parameters = Parameters::of(simulation.case())?;
+        let backup = Saved::of(&simulation, &hash, &parameters);
+        Ok(Self {
+            simulation,
+            hash,
+            parameters,
+            grid: None,
+            progress: Progress::default(),
+            backup,
+            serial: 0,
+            pool: None,
+        })
     }
 
     /// The case.
@@ -242,7 +255,11 @@ impl Cosimulation {
     }
 
     fn next_stage(&mut self) -> Result<bool, CosimulationError> {
-        self.simulation.next_stage().map_err(CosimulationError::Stage)
+        let has_begun = self.simulation.next_stage().map_err(CosimulationError::Stage)?;
+        if has_begun && self.progress.started {
+            self.note_stage();
+        }
+        Ok(has_begun)
     }
 
     /// State of every block, by id.

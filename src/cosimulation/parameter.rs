@@ -1,10 +1,14 @@
-//! Properties of a case that a host may change before the model is built.
+//! Properties of a case that a host may change by name: all of them before the start, those that are tunable at any
+//! time.
 //!
 //! Strengths are those at time 0: when a stage up to the first dynamic one changes a law, the parameter is that change.
 
+use crate::contact::LawId;
+use crate::model::Tunable;
+use crate::model::assemble::law_of;
 use crate::model::case::{Case, JointLaw, JointLawKind, LawChange, Rock, StageKind};
 
-use super::{Cosimulation, initial_stages};
+use super::initial_stages;
 
 /// A property with its value in the case.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +25,8 @@ pub struct Parameter {
     pub low: f64,
     /// Greatest value.
     pub high: f64,
+    /// Whether it may change after the start.
+    pub is_tunable: bool,
     place: Place,
 }
 
@@ -31,6 +37,9 @@ enum Place {
     Law(String, LawKey),
     Damping,
     ContactTolerance,
+    WaterDensity,
+    /// Bolts of this name.
+    Bolt(String),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +62,7 @@ enum LawKey {
 
 /// Why a parameter cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{name}: is {value}, must be {limit}; the value of the case still holds")]
+#[error("{name}: is {value}, must be {limit}; the old value still holds")]
 pub struct ParameterError {
     name: String,
     value: String,
@@ -78,7 +87,41 @@ pub fn parameters(case: &Case) -> Vec<Parameter> {
     let what = "Relative change of contact forces at which the open-close iteration has settled";
     let start = case.solver.contact_tolerance;
     list.push(parameter("contact_tolerance".into(), "", what.into(), start, (1e-12, 1.0), Place::ContactTolerance));
+    if let Some(water) = &case.water {
+        let (name, what) = ("water.density".to_owned(), "Density of water".to_owned());
+        list.push(parameter(name, "kg/m3", what, water.density, (1e-3, 1e5), Place::WaterDensity));
+    }
+    list.extend(bolt_parameters(case));
     list
+}
+
+/// One parameter for all bolts of a name, in the order of the case.
+fn bolt_parameters(case: &Case) -> Vec<Parameter> {
+    let mut names: Vec<&String> = Vec::new();
+    for name in case.bolts.iter().filter_map(|bolt| bolt.name.as_ref()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let of = |name: &String| {
+        let what = format!("Whether bolt {name} is installed: 1, or 0");
+        let start = f64::from(u8::from(is_installed(case, name)));
+        parameter(format!("bolt.{name}.active"), "", what, start, (0.0, 1.0), Place::Bolt(name.clone()))
+    };
+    names.into_iter().map(of).collect()
+}
+
+/// Whether bolts of a name are there at time 0.
+fn is_installed(case: &Case, name: &String) -> bool {
+    let from_start = case.bolts.iter().any(|bolt| bolt.active && bolt.name.as_ref() == Some(name));
+    from_start || case.stages[..=initial_stages(case)].iter().any(|stage| stage.install.contains(name))
+}
+
+/// Installs bolts of a name before the start, or leaves them out.
+fn set_bolt(case: &mut Case, name: &String, is_active: bool) {
+    case.bolts.iter_mut().filter(|bolt| bolt.name.as_ref() == Some(name)).for_each(|bolt| bolt.active = is_active);
+    let initial = initial_stages(case);
+    case.stages[..=initial].iter_mut().for_each(|stage| stage.install.retain(|wanted| wanted != name));
 }
 
 fn rock_parameters(name: &str, rock: &Rock) -> [Parameter; 3] {
@@ -135,7 +178,88 @@ fn parameter(
     (low, high): (f64, f64),
     place: Place,
 ) -> Parameter {
-    Parameter { name, unit, description, start, low, high, place }
+    let is_tunable = match &place {
+        Place::Rock(..) | Place::ContactTolerance => false,
+        Place::Law(_, key) => !matches!(key, LawKey::NormalStiffness | LawKey::ShearStiffness),
+        Place::Damping | Place::WaterDensity | Place::Bolt(_) => true,
+    };
+    Parameter { name, unit, description, start, low, high, is_tunable, place }
+}
+
+impl Parameter {
+    /// Checks a value that is to be set; that of the case itself is always allowed.
+    ///
+    /// # Errors
+    /// It is not finite, out of range, or neither 0 nor 1 for a bolt.
+    pub fn check(&self, value: f64) -> Result<(), ParameterError> {
+        let is_switch = self.is_switch();
+        let is_allowed = (self.low..=self.high).contains(&value) && (!is_switch || value == 0.0 || value == 1.0);
+        if value.to_bits() == self.start.to_bits() || is_allowed {
+            return Ok(());
+        }
+        let limit = if is_switch {
+            "0 or 1".to_owned()
+        } else {
+            format!("at least {} and at most {} {}", self.low, self.high, self.unit).trim_end().to_owned()
+        };
+        Err(ParameterError { name: self.name.clone(), value: value.to_string(), limit })
+    }
+
+    /// Whether it is 0 or 1.
+    pub(super) fn is_switch(&self) -> bool {
+        matches!(self.place, Place::Bolt(_))
+    }
+
+    /// What of a running model it changes; none of a fixed one.
+    pub(super) fn tunables(&self, case: &Case) -> Vec<Tunable> {
+        match &self.place {
+            Place::Law(name, key) => law_of(case, name).and_then(|law| key.tunable(law)).into_iter().collect(),
+            Place::Damping => vec![Tunable::Damping],
+            Place::WaterDensity => vec![Tunable::WaterDensity],
+            Place::Bolt(name) => {
+                let own = case.bolts.iter().enumerate().filter(|(_, bolt)| bolt.name.as_ref() == Some(name));
+                own.map(|(k, _)| Tunable::Bolt(k as u32)).collect()
+            }
+            Place::Rock(..) | Place::ContactTolerance => Vec::new(),
+        }
+    }
+
+    /// The value that a stage of the case gives it, if it gives one.
+    pub(super) fn in_stage(&self, case: &Case, stage: usize) -> Option<f64> {
+        let stage = &case.stages[stage];
+        match &self.place {
+            Place::Law(name, key) => {
+                let changes = stage.law_changes.iter().filter(|change| change.law == *name);
+                changes.filter_map(|change| key.in_change(change)).next_back()
+            }
+            Place::Damping if stage.kind == StageKind::Dynamic => Some(stage.damping_ratio()),
+            Place::Bolt(name) => stage.install.contains(name).then_some(1.0),
+            _ => None,
+        }
+    }
+}
+
+impl LawKey {
+    fn tunable(self, law: LawId) -> Option<Tunable> {
+        match self {
+            Self::Friction => Some(Tunable::Friction(law)),
+            Self::Cohesion => Some(Tunable::Cohesion(law)),
+            Self::Tension => Some(Tunable::Tension(law)),
+            Self::Jrc => Some(Tunable::Roughness(law)),
+            Self::Jcs => Some(Tunable::WallStrength(law)),
+            Self::NormalStiffness | Self::ShearStiffness => None,
+        }
+    }
+
+    /// Its value in a change of the law; angles in radians.
+    fn in_change(self, change: &LawChange) -> Option<f64> {
+        match self {
+            Self::Friction => change.friction_deg.map(f64::to_radians),
+            Self::Cohesion => change.cohesion,
+            Self::Tension => change.tension,
+            Self::NormalStiffness | Self::ShearStiffness | Self::Jrc | Self::Jcs => None,
+        }
+    }
 }
 
 /// Index of the last stage up to the first dynamic one that changes a value of a law, and the value.
@@ -155,10 +279,7 @@ pub fn apply(case: &mut Case, parameter: &Parameter, value: f64) -> Result<(), P
     if value.to_bits() == parameter.start.to_bits() {
         return Ok(());
     }
-    if !(parameter.low..=parameter.high).contains(&value) {
-        let limit = format!("at least {} and at most {} {}", parameter.low, parameter.high, parameter.unit);
-        return Err(ParameterError { name: parameter.name.clone(), value: value.to_string(), limit });
-    }
+    parameter.check(value)?;
     match &parameter.place {
         Place::Rock(name, key) => {
             if let Some(rock) = case.rocks.get_mut(name) {
@@ -171,6 +292,8 @@ pub fn apply(case: &mut Case, parameter: &Parameter, value: f64) -> Result<(), P
             case.stages.iter_mut().filter(dynamic).for_each(|stage| stage.damping = Some(value));
         }
         Place::ContactTolerance => case.solver.contact_tolerance = value,
+        Place::WaterDensity => case.water.iter_mut().for_each(|water| water.density = value),
+        Place::Bolt(name) => set_bolt(case, name, value != 0.0),
     }
     Ok(())
 }
@@ -210,12 +333,5 @@ fn set_law(case: &mut Case, name: &str, key: LawKey, value: f64) {
         LawKey::ShearStiffness => law.shear_stiffness = Some(value),
         LawKey::Jrc => law.jrc = Some(value),
         LawKey::Jcs => law.jcs = Some(value),
-    }
-}
-
-impl Cosimulation {
-    /// Parameters of the case.
-    pub fn parameters(&self) -> Vec<Parameter> {
-        parameters(self.case())
     }
 }

@@ -7,6 +7,7 @@ use crate::model::fit::{self, Unfit};
 use crate::state::State;
 use crate::state::bytes::{self, BytesError, Keeper};
 
+use super::tuning::Parameters;
 use super::{Cosimulation, CosimulationError, Forces, Progress};
 
 /// The state of a model at one instant, with the inputs that hold.
@@ -14,6 +15,12 @@ use super::{Cosimulation, CosimulationError, Forces, Progress};
 pub struct Saved {
     /// Hash of the model.
     hash: String,
+    /// The same without the values of parameters.
+    family: String,
+    /// Internal step (s).
+    dt: f64,
+    /// Values of the parameters.
+    parameters: Vec<f64>,
     state: State,
     grid: Option<Box<State>>,
     progress: Progress,
@@ -23,12 +30,23 @@ pub struct Saved {
 }
 
 impl Saved {
-    pub(super) fn of(state: &State, hash: &str) -> Self {
-        Self { hash: hash.to_owned(), state: state.clone(), grid: None, progress: Progress::default(), checked: true }
+    pub(super) fn of(simulation: &Simulation, hash: &str, parameters: &Parameters) -> Self {
+        Self {
+            hash: hash.to_owned(),
+            family: parameters.family.clone(),
+            dt: simulation.model().dt,
+            parameters: parameters.values.clone(),
+            state: simulation.state().clone(),
+            grid: None,
+            progress: Progress::default(),
+            checked: true,
+        }
     }
 
     /// Takes another state of the same model, into the memory of the old one.
-    pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, progress: Progress) {
+    pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, progress: Progress, parameters: &[f64]) {
+        self.parameters.clear();
+        self.parameters.extend_from_slice(parameters);
         self.state.clone_from(state);
         overwrite(&mut self.grid, grid);
         self.progress = progress;
@@ -53,8 +71,8 @@ fn overwrite(own: &mut Option<Box<State>>, new: Option<&State>) {
 impl Cosimulation {
     /// The state now.
     pub fn save(&self) -> Saved {
-        let (state, grid) = (self.simulation.state().clone(), self.grid.clone());
-        Saved { hash: self.hash.clone(), state, grid, progress: self.progress, checked: true }
+        let saved = Saved::of(&self.simulation, &self.hash, &self.parameters);
+        Saved { grid: self.grid.clone(), progress: self.progress, ..saved }
     }
 
     /// Goes back to a saved state of this model. The numbers of one that [`Cosimulation::save`] made, or that was
@@ -69,6 +87,50 @@ impl Cosimulation {
         }
         self.return_to(saved);
         Ok(())
+    }
+
+    /// Goes back to a saved state of this model, or of one that differs from it in values of parameters alone, and keeps
+    /// the parameters that hold now.
+    ///
+    /// # Errors
+    /// As [`Cosimulation::check`], but for the parameters; a model with another internal step.
+    pub fn restore_keeping_parameters(&mut self, saved: &Saved) -> Result<(), CosimulationError> {
+        let own = self.adopt(saved)?;
+        if !own.checked {
+            self.check_numbers(&own)?;
+        }
+        self.return_to(&own);
+        self.progress.changed = true;
+        Ok(())
+    }
+
+    /// A saved state of a model that differs in values of parameters alone as one of this model, with the parameters
+    /// that hold now.
+    fn adopt(&self, saved: &Saved) -> Result<Saved, CosimulationError> {
+        if saved.family != self.parameters.family {
+            let (found, own) = (saved.family.clone(), self.parameters.family.clone());
+            return Err(BytesError::OtherCase { found, own }.into());
+        }
+        let own = self.internal_step();
+        if saved.dt.to_bits() != own.to_bits() {
+            let limit = format!("{own} s, that of this model");
+            let remedy = "keep what changes the internal step, such as Young's moduli, or give the case a shorter one";
+            return Err(CosimulationError::value(
+                "internal step of the state",
+                format!("{} s", saved.dt),
+                &limit,
+                remedy,
+            ));
+        }
+        let mut adopted =
+            Saved { hash: self.hash.clone(), parameters: self.parameters.values.clone(), ..saved.clone() };
+        for state in std::iter::once(&mut adopted.state).chain(adopted.grid.as_deref_mut()) {
+            if state.stage as usize >= self.case().stages.len() {
+                return self.check(&mut adopted).map(|()| adopted);
+            }
+            self.give_parameters(state);
+        }
+        Ok(adopted)
     }
 
     /// Whether a saved state can be one of this model; notes in the state that it can.
@@ -94,7 +156,12 @@ impl Cosimulation {
     }
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
-        let Saved { hash: _, state, grid, progress, checked: _ } = saved;
+        let Saved { hash: _, family: _, dt: _, parameters, state, grid, progress, checked: _ } = saved;
+        fit::length("parameters", parameters.len(), self.parameters.list.len())?;
+        for (parameter, &value) in self.parameters.list.iter().zip(parameters) {
+            let (low, high) = (parameter.low.min(parameter.start), parameter.high.max(parameter.start));
+            fit::between(&parameter.name, value, low, high)?;
+        }
         let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, host_time, forces } =
             *progress;
         self.simulation.check(state)?;
@@ -116,18 +183,21 @@ impl Cosimulation {
 
     /// Keeps the state that a failure goes back to.
     pub(super) fn keep(&mut self) {
-        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.progress);
+        let values = &self.parameters.values;
+        self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.progress, values);
     }
 
     /// Goes back to the state that was kept.
     pub(super) fn roll_back(&mut self) {
         self.serial += 1;
+        self.parameters.values.clone_from(&self.backup.parameters);
         self.progress = self.backup.give(&mut self.simulation, &mut self.grid);
     }
 
     /// Goes back to a saved state.
     fn return_to(&mut self, saved: &Saved) {
         self.serial += 1;
+        self.parameters.values.clone_from(&saved.parameters);
         self.progress = saved.give(&mut self.simulation, &mut self.grid);
     }
 
@@ -146,6 +216,18 @@ impl Cosimulation {
     /// The bytes are damaged, or of another model or version, or hold what cannot be (see [`Cosimulation::check`]).
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
         let mut saved = bytes::decode(Keeper::Model, bytes, &self.hash)?;
+        self.check(&mut saved)?;
+        Ok(saved)
+    }
+
+    /// The saved state in bytes, as one of this model, whose parameters it then has: that of a model that differs from
+    /// it in values of parameters alone will do, too.
+    ///
+    /// # Errors
+    /// As [`Cosimulation::deserialize`] and [`Cosimulation::restore_keeping_parameters`].
+    pub fn deserialize_keeping_parameters(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
+        let hash = bytes::case_hash(Keeper::Model, bytes)?;
+        let mut saved = self.adopt(&bytes::decode(Keeper::Model, bytes, &hash)?)?;
         self.check(&mut saved)?;
         Ok(saved)
     }

@@ -4,7 +4,8 @@
 use std::fmt::Display;
 
 use crate::contact::{
-    BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, Meeting, NeighbourList, Release, Unloaded,
+    BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, JointLaw, Meeting, NeighbourList, Release,
+    Roughness, Unloaded,
 };
 use crate::geometry::Vector;
 use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
@@ -146,6 +147,8 @@ impl Simulation {
             removed: _,
             laws,
             law_switch: _,
+            damping: _,
+            water_density: _,
             bolts: _,
             drive: Drive { from, to, since, until },
             events,
@@ -316,7 +319,11 @@ impl Simulation {
         numbers("support_force", &state.support_force, FORCE)?;
         numbers("support_rest", &state.support_rest, LENGTH)?;
         let (laws, switch) = self.laws_in(state.stage);
-        same("laws", &state.laws, &laws)?;
+        check_laws(&state.laws, laws)?;
+        if let Some(damping) = state.damping {
+            between("damping", damping, 0.0, 1.0)?;
+        }
+        between("water_density", state.water_density, 0.0, RATE)?;
         same("law_switch", &state.law_switch, &switch)?;
         for (k, bolt) in state.bolts.iter().enumerate() {
             let BoltState { active: _, broken: _, rest, natural, force } = *bolt;
@@ -385,6 +392,33 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// Checks joint laws, which are those of the stage but for what a host may change.
+fn check_laws(found: &[JointLaw], mut own: Vec<JointLaw>) -> Fit {
+    length("laws", found.len(), own.len())?;
+    for (k, (found, own)) in found.iter().zip(&mut own).enumerate() {
+        let JointLaw { friction, cohesion, tension, residual_friction, residual_cohesion, .. } = *found;
+        for (field, value) in [
+            ("friction", friction),
+            ("cohesion", cohesion),
+            ("tension", tension),
+            ("residual_friction", residual_friction),
+            ("residual_cohesion", residual_cohesion),
+        ] {
+            between(format_args!("laws[{k}].{field}"), value, 0.0, FORCE)?;
+        }
+        (own.friction, own.cohesion, own.tension) = (friction, cohesion, tension);
+        (own.residual_friction, own.residual_cohesion) = (residual_friction, residual_cohesion);
+        if let (Some(found), Some(own)) = (found.roughness, &mut own.roughness) {
+            let Roughness { angle, jrc, jcs } = found;
+            between(format_args!("laws[{k}].roughness.angle"), angle, 0.0, RATE)?;
+            between(format_args!("laws[{k}].roughness.jrc"), jrc, 0.0, RATE)?;
+            between(format_args!("laws[{k}].roughness.jcs"), jcs, 0.0, FORCE)?;
+            *own = found;
+        }
+    }
+    same("laws", found, &own)
 }
 
 fn check_bonds(bonds: &[BondHistory], laws: usize, sections: &[Option<Release>]) -> Fit {

@@ -13,6 +13,7 @@ pub mod settle;
 mod simulation;
 mod stage;
 pub mod tables;
+mod tune;
 
 pub use enmm_case as case;
 pub use enmm_case::Case;
@@ -24,6 +25,7 @@ pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState};
 pub use restless::Restless;
 pub use simulation::Simulation;
+pub use tune::Tunable;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::{self, BytesError};

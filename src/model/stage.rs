@@ -40,7 +40,10 @@ impl Simulation {
     pub(super) fn regime_of(&self, stage: usize) -> Regime {
         let stage_case = &self.case.stages[stage];
         match stage_case.kind {
-            StageKind::Dynamic => Regime::Dynamic { damping: stage_case.damping_ratio() },
+            StageKind::Dynamic => {
+                let damping = self.built.state.damping.unwrap_or_else(|| stage_case.damping_ratio());
+                Regime::Dynamic { damping }
+            }
             StageKind::Static => {
                 let default = if stage == 0 { self.default_ramp() } else { 0.0 };
                 Regime::Static { ramp: stage_case.ramp.unwrap_or(default) }
@@ -172,14 +175,10 @@ fn change_laws(case: &Case, stage: usize, laws: &mut [JointLaw], switch: &mut [L
         let Some(k) = law_of(case, &change.law) else { continue };
         let law = &mut laws[k];
         if let Some(degrees) = change.friction_deg {
-            law.friction = libm::tan(degrees.to_radians());
-            law.residual_friction = law.friction;
-            if let Some(roughness) = &mut law.roughness {
-                roughness.angle = degrees.to_radians();
-            }
+            law.set_friction(degrees.to_radians());
         }
         if let Some(cohesion) = change.cohesion {
-            (law.cohesion, law.residual_cohesion) = (cohesion, cohesion);
+            law.set_cohesion(cohesion);
         }
         if let Some(tension) = change.tension {
             law.tension = tension;

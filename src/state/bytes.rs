@@ -178,6 +178,18 @@ pub fn head(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<Head, Bytes
     Ok(Head { size: reader.at, length, checksum })
 }
 
+/// The case hash that the head of some bytes has.
+///
+/// # Errors
+/// As [`head`], but for the hash itself.
+pub fn case_hash(keeper: Keeper, bytes: &[u8]) -> Result<String, BytesError> {
+    match head(keeper, bytes, "") {
+        Err(BytesError::OtherCase { found, .. }) => Ok(found),
+        Err(error) => Err(error),
+        Ok(_) => Ok(String::new()),
+    }
+}
+
 fn version(found: String, own: String) -> BytesError {
     BytesError::Version { found, own }
 }

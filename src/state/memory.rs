@@ -84,6 +84,8 @@ impl State {
             // A few entries for every law and stage of the case, or numbers.
             laws: _,
             law_switch: _,
+            damping: _,
+            water_density: _,
             stage_starts: _,
             most_rest: _,
             stage: _,

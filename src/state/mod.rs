@@ -100,6 +100,10 @@ pub struct State {
     pub laws: Vec<JointLaw>,
     /// Law that each law of the case has been switched to.
     pub law_switch: Vec<LawId>,
+    /// Damping ratio of dynamic stages, if it is no longer that of the case.
+    pub damping: Option<f64>,
+    /// Density of water (kg/m³); 0 where there is none.
+    pub water_density: f64,
     /// Displacements at the start of a static stage (m).
     pub stage_displacement: Vec<Vector>,
     /// Forces out of balance at the start of a static stage (N/m).
@@ -128,7 +132,7 @@ clone_without_allocating! {
     State {
         stage stage_start stage_starts most_rest stage_step step part dt_last displacement velocity contacts
         bonds sections found friction_delay neighbours support_force support_rest fix_active removed laws
-        law_switch stage_displacement stage_force drive bolts plastic columns acceleration static_stretch
+        law_switch damping water_density stage_displacement stage_force drive bolts plastic columns acceleration static_stretch
         events ledger counters
     }
 }

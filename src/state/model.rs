@@ -253,6 +253,11 @@ impl Model {
         1.0 + (self.theta - 1.0) * self.theta_step / dt
     }
 
+    /// Density of water at the start (kg/m³); 0 where there is none.
+    pub fn water_density(&self) -> f64 {
+        self.water.as_ref().map_or(0.0, |water| water.density)
+    }
+
     /// Material point: sum of a cover field over an element's covers at reference point `p`.
     pub fn sample(&self, element: ElementId, p: Point, field: &[Vector]) -> Vector {
         cover::sample(&self.covers.element_covers[element], &self.covers.weights(element, p), field)

@@ -53,7 +53,7 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
     let share = state.drive.share(t);
     if let Some(water) = &model.water {
         let level = state.drive.water_level(share);
-        let weight = water.density * state.drive.gravity(share).norm() * ramp;
+        let weight = state.water_density * state.drive.gravity(share).norm() * ramp;
         faces.push_water(water, level, weight, force);
         if model.strengths.iter().flatten().any(|strength| strength.is_porous) {
             push_pores(model, state, |at| weight * water.surfaces[state.stage as usize].depth(level, at), force);

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Whole {
     pub hash: String,
+    pub family: String,
+    pub dt: f64,
+    pub parameters: Vec<f64>,
     pub state: State,
     pub grid: Option<Box<State>>,
     pub progress: Progress,

@@ -36,7 +36,7 @@ pub fn wet_edges(simulation: &Simulation) -> Vec<WetEdge> {
 pub fn water_weight(simulation: &Simulation) -> f64 {
     let drive = &simulation.state().drive;
     let gravity = drive.gravity(drive.share(simulation.time())).norm();
-    simulation.model().water.as_ref().map_or(0.0, |water| water.density * gravity)
+    simulation.state().water_density * gravity
 }
 
 /// The surface of the water now, from left to right (m), level beyond both ends; empty without water.

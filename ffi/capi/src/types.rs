@@ -19,6 +19,9 @@ pub const ENMM_NO_JOINT: u32 = u32::MAX;
 /// Other block of events that are no overlap.
 pub const ENMM_NO_BLOCK: u32 = u32::MAX;
 
+/// Flag of enmm_state_restore_with and enmm_state_deserialize_with: the model keeps the parameters that it has.
+pub const ENMM_KEEP_PARAMETERS: u32 = 1;
+
 /// A model. The handle is a number that is never dereferenced: a NULL or dead handle is an error and never a crash.
 pub struct enmm_model(());
 

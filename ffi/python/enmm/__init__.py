@@ -55,6 +55,7 @@ from ._errors import (
 from ._frames import Frame, Frames
 from ._library import Library, load_library
 from ._model import BLOCK_DTYPE, CONTACT_DTYPE, Model, State
+from ._parameters import Parameter, Parameters
 from ._ports import Port, Ports
 from ._program import program
 from ._table import Table
@@ -100,6 +101,8 @@ __all__ = [
     "NotFoundError",
     "NullArgumentError",
     "PanicError",
+    "Parameter",
+    "Parameters",
     "Port",
     "PortKind",
     "PortState",

@@ -9,6 +9,7 @@ UINT32_MAX = 0xFFFF_FFFF
 ABI_VERSION = 1
 NO_JOINT = UINT32_MAX
 NO_BLOCK = UINT32_MAX
+KEEP_PARAMETERS = 1
 
 
 class BlockFlag(IntFlag):
@@ -285,8 +286,18 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_set_strength_factor": (c_int32, [c_void_p, c_double]),
     "enmm_set_interpolation": (c_int32, [c_void_p, c_int32]),
     "enmm_get_interpolation": (c_int32, [c_void_p, POINTER(c_int32)]),
+    "enmm_parameter_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
+    "enmm_find_parameter": (c_int32, [c_void_p, c_char_p, POINTER(c_uint32)]),
+    "enmm_parameter_name": (c_int32, [c_void_p, c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
+    "enmm_parameter_unit": (c_int32, [c_void_p, c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
+    "enmm_parameter_description": (c_int32, [c_void_p, c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
+    "enmm_parameter_range": (c_int32, [c_void_p, c_uint32, POINTER(c_double), POINTER(c_double), POINTER(c_int32)]),
+    "enmm_get_parameter": (c_int32, [c_void_p, c_uint32, POINTER(c_double)]),
+    "enmm_set_parameter": (c_int32, [c_void_p, c_uint32, c_double]),
+    "enmm_set_parameters": (c_int32, [c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double)]),
     "enmm_block_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
     "enmm_get_block_states": (c_int32, [c_void_p, POINTER(BlockState), c_size_t, POINTER(c_size_t)]),
+    "enmm_view_block_states": (c_int32, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_size_t)]),
     "enmm_get_energies": (c_int32, [c_void_p, POINTER(Energies)]),
     "enmm_get_totals": (c_int32, [c_void_p, POINTER(Totals)]),
     "enmm_get_contacts": (c_int32, [c_void_p, POINTER(Contact), c_size_t, POINTER(c_size_t)]),
@@ -303,8 +314,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_get_port_state": (c_int32, [c_void_p, c_uint32, POINTER(PortState)]),
     "enmm_state_save": (c_int32, [c_void_p, POINTER(c_void_p)]),
     "enmm_state_restore": (c_int32, [c_void_p, c_void_p]),
+    "enmm_state_restore_with": (c_int32, [c_void_p, c_void_p, c_uint32]),
     "enmm_state_free": (c_int32, [c_void_p]),
     "enmm_state_serialize": (c_int32, [c_void_p, c_void_p, c_char_p, c_size_t, POINTER(c_size_t)]),
     "enmm_state_deserialize": (c_int32, [c_void_p, c_char_p, c_size_t, POINTER(c_void_p)]),
+    "enmm_state_deserialize_with": (c_int32, [c_void_p, c_char_p, c_size_t, c_uint32, POINTER(c_void_p)]),
 }
 """Result and arguments of every function."""

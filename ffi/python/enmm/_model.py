@@ -17,6 +17,7 @@ from ._closing import Closing
 from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
 from ._errors import BusyError, DeadHandleError, Status, invalid
 from ._library import Library, load_library
+from ._parameters import Parameters
 from ._ports import Port, Ports
 from ._types import Event
 from ._values import Energies, StepInfo, Totals
@@ -83,15 +84,19 @@ def _serialized(core: Core, state: State) -> bytes:
 
 
 class Source(NamedTuple):
-    """What a model was made of: the text of its case, the directory of the files that it names, and its name."""
+    """What a model was made of: the text of its case, the directory of the files that it names, its name, parameters."""
 
     toml: str
     base_dir: str
     name: str
+    parameters: tuple[tuple[str, float], ...] = ()
 
     def model(self) -> "Model":
         """Builds the model once more, by the library that this process finds."""
-        return Model.from_string(self.toml, self.base_dir)
+        model = Model.from_string(self.toml, self.base_dir)
+        if self.parameters:
+            model.parameters.update(dict(self.parameters))
+        return model
 
 
 class Model(Closing):
@@ -108,10 +113,11 @@ class Model(Closing):
     """
 
     def __init__(self, core: Core, source: Source) -> None:
-        self._core, self._source = core, source
+        self._core, self._case = core, source
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
         self._threads = 1
         self._ports = Ports(core)
+        self._parameters = Parameters(core)
 
     @classmethod
     def from_file(
@@ -149,6 +155,11 @@ class Model(Closing):
 
     def __reduce__(self) -> tuple[object, ...]:
         return _unpickled_model, (self._source, self.serialize(), self._threads)
+
+    @property
+    def _source(self) -> Source:
+        """What it was made of, with the parameters that were set before the start."""
+        return self._case._replace(parameters=tuple(self._parameters.built.items()))
 
     def __repr__(self) -> str:
         if not self._core.close.alive:
@@ -304,6 +315,11 @@ class Model(Closing):
         """
         self._core.call("enmm_set_strength_factor", number(f))
 
+    @property
+    def parameters(self) -> Parameters:
+        """Parameters of the case by name, such as "joint_law.weak.friction", to be read and set."""
+        return self._parameters
+
     # Observation.
 
     @property
@@ -388,12 +404,14 @@ class Model(Closing):
         """
         return self._state("enmm_state_save")
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: State, *, keep_parameters: bool = False) -> None:
         """Goes back to a saved state of this model, or of another model of the same case.
 
-        The state can be used again. Raises StateError for a state of another case; the model then stays as it is.
+        The state can be used again, and brings its parameters along. With `keep_parameters` it may be one of a model
+        that differs in values of parameters, and this model keeps its own. Raises StateError for a state of another
+        case; the model then stays as it is.
         """
-        self._core.call("enmm_state_restore", state.handle)
+        self._core.call("enmm_state_restore_with", state.handle, _abi.KEEP_PARAMETERS if keep_parameters else 0)
 
     def serialize(self, state: State | None = None) -> bytes:
         """A state, without one that of now, as bytes for a file or another process.
@@ -405,14 +423,16 @@ class Model(Closing):
                 return self.serialize(now)
         return _serialized(self._core, state)
 
-    def deserialize(self, data: bytes | bytearray | memoryview) -> State:
+    def deserialize(self, data: bytes | bytearray | memoryview, *, keep_parameters: bool = False) -> State:
         """Makes a state of bytes that `serialize` gave, in this process or another.
 
-        Raises StateError for bytes that are damaged, or of another case or version.
+        With `keep_parameters` the bytes may be of a model that differs in values of parameters; the state then has
+        those of this model. Raises StateError for bytes that are damaged, or of another case or version.
         """
         # A view refuses what is no buffer, of which `bytes` would make zeros or a copy.
         whole = bytes(memoryview(data))
-        return self._state("enmm_state_deserialize", whole, len(whole))
+        flags = _abi.KEEP_PARAMETERS if keep_parameters else 0
+        return self._state("enmm_state_deserialize_with", whole, len(whole), flags)
 
     def _state(self, name: str, *arguments: object) -> State:
         handle = c_void_p()

@@ -57,6 +57,22 @@ pub struct JointLaw {
     pub softening: Option<Softening>,
 }
 
+impl JointLaw {
+    /// Gives it another friction angle (rad), peak and residual.
+    pub fn set_friction(&mut self, angle: f64) {
+        self.friction = libm::tan(angle);
+        self.residual_friction = self.friction;
+        if let Some(roughness) = &mut self.roughness {
+            roughness.angle = angle;
+        }
+    }
+
+    /// Gives it another cohesion (Pa), peak and residual.
+    pub fn set_cohesion(&mut self, cohesion: f64) {
+        (self.cohesion, self.residual_cohesion) = (cohesion, cohesion);
+    }
+}
+
 /// Forces (N/m) that a contact of some length can carry.
 #[doc(alias = "friction cone")]
 #[doc(alias = "yield criterion")]

@@ -442,6 +442,8 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         removed: vec![false; model.covers.block_count()],
         laws: model.laws.clone(),
         law_switch: LawId::all(model.laws.len()).collect(),
+        damping: None,
+        water_density: model.water_density(),
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(model)),
@@ -457,7 +459,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
 }
 
 /// The joint law of a name: laws have the order of the case's table.
-pub(super) fn law_of(case: &Case, name: &str) -> Option<LawId> {
+pub fn law_of(case: &Case, name: &str) -> Option<LawId> {
     case.joint_laws.keys().position(|k| k == name).map(LawId::new)
 }
 

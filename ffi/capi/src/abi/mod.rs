@@ -4,5 +4,6 @@ pub mod inputs;
 pub mod library;
 pub mod model;
 pub mod observe;
+pub mod parameters;
 mod pointers;
 pub mod state;

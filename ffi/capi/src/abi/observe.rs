@@ -41,7 +41,7 @@ pub unsafe extern "C" fn enmm_get_block_states(
 ) -> enmm_status {
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe {
-        pointers::fill_made(model.block_count(), || model.block_states().collect(), out, capacity, written)
+        pointers::fill_made(model.block_count(), || model.block_states(), out, capacity, written)
     })
 }
 

@@ -45,6 +45,18 @@ pub unsafe fn write<T: Copy>(name: &str, out: *mut T, value: T) -> Outcome {
     Ok(())
 }
 
+/// Writes a value, unless the caller has no interest in it.
+///
+/// # Safety
+/// `out` is NULL or points to a value.
+pub unsafe fn write_if_wanted<T: Copy>(out: *mut T, value: T) -> Outcome {
+    if out.is_null() {
+        return Ok(());
+    }
+    // SAFETY: promised by the caller.
+    unsafe { write("out", out, value) }
+}
+
 /// Writes a handle.
 ///
 /// # Safety
@@ -105,9 +117,25 @@ pub unsafe fn check_struct<T: Growing>(out: *const T) -> Outcome {
 
 /// Writes structures and their number, or the number alone; the size of the first is the stride.
 ///
-/// # Safety `out` is NULL or points to `capacity` structures as large as the first one's `struct_size` says, `written`
-/// is NULL or points to a number.
+/// # Safety
+/// `out` is NULL or points to `capacity` structures as large as the first one's `struct_size` says, `written` is NULL or
+/// points to a number.
 pub unsafe fn fill_structs<T: Growing>(items: &[T], out: *mut T, capacity: usize, written: *mut usize) -> Outcome {
+    // SAFETY: promised by the caller.
+    unsafe { fill_made(items.len(), || items.iter().copied(), out, capacity, written) }
+}
+
+/// Writes `count` structures as they are made, or their number without making them.
+///
+/// # Safety
+/// As [`fill_structs`].
+pub unsafe fn fill_made<T: Growing, I: Iterator<Item = T>>(
+    count: usize,
+    make: impl FnOnce() -> I,
+    out: *mut T,
+    capacity: usize,
+    written: *mut usize,
+) -> Outcome {
     // SAFETY: promised by the caller.
     unsafe {
         let stride = if out.is_null() || capacity == 0 {
@@ -116,34 +144,13 @@ pub unsafe fn fill_structs<T: Growing>(items: &[T], out: *mut T, capacity: usize
             check(T::NAME, out, 1)?;
             stride_of(out)?
         };
-        if announce(items.len(), out.is_null(), capacity, written)? {
-            for (k, item) in items.iter().enumerate() {
-                put(item, out.cast::<u8>().add(k * stride), stride);
+        if announce(count, out.is_null(), capacity, written)? {
+            for (k, item) in make().take(count).enumerate() {
+                put(&item, out.cast::<u8>().add(k * stride), stride);
             }
         }
     }
     Ok(())
-}
-
-/// Writes `count` structures that are made for it, or their number without making them.
-///
-/// # Safety
-/// As [`fill_structs`].
-pub unsafe fn fill_made<T: Growing>(
-    count: usize,
-    make: impl FnOnce() -> Vec<T>,
-    out: *mut T,
-    capacity: usize,
-    written: *mut usize,
-) -> Outcome {
-    // SAFETY: promised by the caller.
-    unsafe {
-        if announce(count, out.is_null(), capacity, written)? {
-            fill_structs(&make(), out, capacity, written)
-        } else {
-            Ok(())
-        }
-    }
 }
 
 /// Writes the first `size` bytes of a structure that both sides know, and `size` itself.

@@ -36,6 +36,17 @@ pub extern "C" fn enmm_state_restore(model: *mut enmm_model, state: *mut enmm_st
     with_model(model.addr(), |model| model.restore(state.addr()))
 }
 
+/// Returns the model to a saved state in a way that `flags` choose: 0 as enmm_state_restore does, ENMM_KEEP_PARAMETERS
+/// for a state of a model that may differ in values of parameters (see enmm_parameter_count), while this one keeps its
+/// own.
+///
+/// Errors: as enmm_state_restore; ENMM_INVALID_ARGUMENT for other flags, or when the parameters have made the internal
+/// step another one.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_state_restore_with(model: *mut enmm_model, state: *mut enmm_state, flags: u32) -> enmm_status {
+    with_model(model.addr(), |model| model.restore_with(state.addr(), flags))
+}
+
 /// Frees a state. NULL does nothing.
 ///
 /// Errors: ENMM_DEAD_HANDLE.
@@ -91,5 +102,30 @@ pub unsafe extern "C" fn enmm_state_deserialize(
         pointers::write_handle("out", out, 0)?;
         let bytes = pointers::slice("bytes", bytes, size)?;
         pointers::write_handle("out", out, model.deserialize(bytes)?)
+    })
+}
+
+/// Makes a state from bytes in a way that `flags` choose: 0 as enmm_state_deserialize does, ENMM_KEEP_PARAMETERS for
+/// bytes of a model that may differ in values of parameters; the state has those of this model.
+///
+/// Errors: as enmm_state_deserialize and enmm_state_restore_with.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_state_deserialize_with(
+    model: *mut enmm_model,
+    bytes: *const u8,
+    size: usize,
+    flags: u32,
+    out: *mut *mut enmm_state,
+) -> enmm_status {
+    // SAFETY: promised by the host. Without a model there is no state either; a NULL is reported below.
+    let _ = unsafe { pointers::write_handle("out", out, 0) };
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe {
+        pointers::write_handle("out", out, 0)?;
+        let bytes = pointers::slice("bytes", bytes, size)?;
+        pointers::write_handle("out", out, model.deserialize_with(bytes, flags)?)
     })
 }

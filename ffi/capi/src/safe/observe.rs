@@ -44,7 +44,7 @@ impl Model {
     }
 
     /// All contacts.
-    pub fn contacts(&self) -> Vec<enmm_contact> {
+    pub fn contacts(&self) -> impl Iterator<Item = enmm_contact> + '_ {
         let of = |contact: &ContactView| enmm_contact {
             struct_size: size_of::<enmm_contact>(),
             state: match contact.state {
@@ -63,7 +63,7 @@ impl Model {
             normal_stress: -contact.normal_force / contact.length,
             shear_stress: contact.shear_force / contact.length,
         };
-        self.inner.contact_views().iter().map(of).collect()
+        self.inner.contact_views().iter().map(of)
     }
 
     /// Events from the one of index `first` on.

@@ -7,6 +7,7 @@ use engine::cosimulation::Saved;
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
 use super::model::Model;
+use crate::types::ENMM_KEEP_PARAMETERS;
 
 /// States that are alive.
 pub static STATES: Table<Kept> = Table::new(0x20, "state");
@@ -37,8 +38,21 @@ impl Model {
     /// # Errors
     /// A dead state, or one of another case.
     pub fn restore(&mut self, state: usize) -> Outcome {
+        self.restore_with(state, 0)
+    }
+
+    /// Goes back to a state in the way of the flags.
+    ///
+    /// # Errors
+    /// As [`Model::restore`]; flags that do not exist.
+    pub fn restore_with(&mut self, state: usize, flags: u32) -> Outcome {
         let kept = STATES.find(state)?;
-        Ok(self.inner.restore(&kept.saved)?)
+        if keeps_parameters(flags)? {
+            self.inner.restore_keeping_parameters(&kept.saved)?;
+        } else {
+            self.inner.restore(&kept.saved)?;
+        }
+        Ok(())
     }
 
     /// Hands the bytes of a state to `copy`, and keeps them when only their number is `asked` for.
@@ -65,6 +79,27 @@ impl Model {
     /// # Errors
     /// Bytes that are damaged, or of another case or version.
     pub fn deserialize(&self, bytes: &[u8]) -> Result<usize, Failure> {
-        STATES.insert(Kept::of(self.inner.deserialize(bytes)?))
+        self.deserialize_with(bytes, 0)
+    }
+
+    /// Makes a state of bytes in the way of the flags and returns its handle.
+    ///
+    /// # Errors
+    /// As [`Model::deserialize`]; flags that do not exist.
+    pub fn deserialize_with(&self, bytes: &[u8], flags: u32) -> Result<usize, Failure> {
+        STATES.insert(Kept::of(if keeps_parameters(flags)? {
+            self.inner.deserialize_keeping_parameters(bytes)?
+        } else {
+            self.inner.deserialize(bytes)?
+        }))
+    }
+}
+
+/// Whether the flags choose that a model keeps its parameters.
+fn keeps_parameters(flags: u32) -> Result<bool, Failure> {
+    match flags {
+        0 => Ok(false),
+        ENMM_KEEP_PARAMETERS => Ok(true),
+        _ => Err(Failure::invalid(format!("flags: is {flags}, must be 0 or ENMM_KEEP_PARAMETERS (1)"))),
     }
 }

@@ -184,5 +184,10 @@ fn water(simulation: &Simulation) -> Option<Water> {
         let ends = [boundary.reference[edge], boundary.reference[boundary.next[edge]]];
         reached.entry(boundary.trace[edge]).or_default().push(ends);
     }
-    Some(Water { weight: water.density * state.drive.gravity(share).norm(), in_rock: water.in_rock, surface, reached })
+    Some(Water {
+        weight: state.water_density * state.drive.gravity(share).norm(),
+        in_rock: water.in_rock,
+        surface,
+        reached,
+    })
 }
