@@ -268,6 +268,14 @@ enum enmm_port_type
    * Faces of joints: takes fluid pressure.
    */
   ENMM_PORT_JOINT = 2,
+  /**
+   * A quiet boundary: takes the particle velocity of the wave that comes in (enmm_set_port_velocity).
+   */
+  ENMM_PORT_QUIET = 3,
+  /**
+   * A held point or edge: takes the velocity or the displacement with which it is moved.
+   */
+  ENMM_PORT_FIX = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -299,6 +307,47 @@ enum enmm_interpolation
 typedef enum enmm_interpolation enmm_interpolation;
 #else
 typedef int32_t enmm_interpolation;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * An input, for enmm_set_input_interpolation.
+ */
+enum enmm_input
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Gravity.
+   */
+  ENMM_INPUT_GRAVITY = 0,
+  /**
+   * Acceleration of the base.
+   */
+  ENMM_INPUT_BASE_ACCELERATION = 1,
+  /**
+   * Height of the water.
+   */
+  ENMM_INPUT_WATER_LEVEL = 2,
+  /**
+   * Factor on the strength of joints.
+   */
+  ENMM_INPUT_STRENGTH_FACTOR = 3,
+  /**
+   * Force and moment of the block that the index names.
+   */
+  ENMM_INPUT_BLOCK = 4,
+  /**
+   * Inputs of the port that the index names.
+   */
+  ENMM_INPUT_PORT = 5,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_input enmm_input;
+#else
+typedef int32_t enmm_input;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -763,6 +812,22 @@ typedef struct enmm_port_state {
    * Largest accumulated slip along the joints (m).
    */
   double slip;
+  /**
+   * Mean traction of the quiet boundary on the rock, x (Pa).
+   */
+  double traction_x;
+  /**
+   * Mean traction of the quiet boundary on the rock, y (Pa).
+   */
+  double traction_y;
+  /**
+   * Force of the moved supports on the rock per metre, x (N/m).
+   */
+  double reaction_x;
+  /**
+   * Force of the moved supports on the rock per metre, y (N/m).
+   */
+  double reaction_y;
 } enmm_port_state;
 
 #ifdef __cplusplus
@@ -1005,6 +1070,76 @@ enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, dou
  * Errors: ENMM_INVALID_ARGUMENT for a value that is not at least 0 and at most 1e6.
  */
 enmm_status enmm_set_strength_factor(struct enmm_model *model, double f);
+
+/**
+ * Sets the particle velocity (m/s, x to the right, y upwards) of the wave that comes in through a quiet boundary, or the
+ * velocity with which the supports of a held point or edge move. It acts in dynamic stages, beside what the case says.
+ *
+ * Acts at the same times as enmm_set_gravity; a linear way is taken exactly, its bends included.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is of another kind, or a value that is not finite or
+ * beyond 1e4 m/s.
+ */
+enmm_status enmm_set_port_velocity(struct enmm_model *model,
+                                   uint32_t port,
+                                   double vx,
+                                   double vy);
+
+/**
+ * Sets the displacement (m) that the supports of a held point or edge have reached at the end of the next step, counted
+ * from their place before a host has moved them. They go there at a steady velocity and stay, unless it is set again.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is of another kind, or a value that is not finite or
+ * beyond 1e9 m.
+ */
+enmm_status enmm_set_port_displacement(struct enmm_model *model, uint32_t port, double ux, double uy);
+
+/**
+ * Makes all inputs that have been set since the last step act at once from the start of the next one, even where inputs
+ * vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
+ */
+enmm_status enmm_jump(struct enmm_model *model);
+
+/**
+ * Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block or the
+ * port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved states.
+ * enmm_set_interpolation sets that of all inputs.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another number, or a block or port that does not exist.
+ */
+enmm_status enmm_set_input_interpolation(struct enmm_model *model, int32_t input, uint32_t index, int32_t mode);
+
+/**
+ * Returns the inputs that are set now: gravity (m/s2, two numbers), acceleration of the base (m/s2, two numbers), height
+ * of the water (m; 0 without water), factor on the strength of joints. Pointers may be NULL where the value is of no
+ * interest.
+ */
+enmm_status enmm_get_inputs(struct enmm_model *model,
+                            double *gravity,
+                            double *base_acceleration,
+                            double *water_level,
+                            double *strength_factor);
+
+/**
+ * Returns the force (N/m, two numbers) and the moment (N*m/m) that are set on a block now. Pointers may be NULL where
+ * the value is of no interest.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a block that does not exist.
+ */
+enmm_status enmm_get_block_force(struct enmm_model *model, uint32_t block, double *force, double *moment);
+
+/**
+ * Returns what is set on a port now: traction (Pa, two numbers), pressure (Pa) and velocity (m/s, two numbers); 0 where
+ * its kind takes no such input. For a block see enmm_get_block_force. Pointers may be NULL where the value is of no
+ * interest.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist.
+ */
+enmm_status enmm_get_port_inputs(struct enmm_model *model,
+                                 uint32_t port,
+                                 double *traction,
+                                 double *pressure,
+                                 double *velocity);
 
 /**
  * Sets how inputs vary within a communication step: a value of enmm_interpolation. Acts from the next step on, and is

@@ -58,6 +58,7 @@ mod long_run;
 mod loops;
 mod mass_scaling;
 mod mechanism;
+mod moved_supports;
 mod near_pairs;
 mod objectivity;
 mod observe;

@@ -223,6 +223,64 @@ public:
 
     void set_joint_pressure(std::uint32_t port, double p) { detail::check(enmm_set_joint_pressure(handle_, port, p)); }
 
+    /** Velocity of moved supports, or of the wave that comes in through a quiet boundary. */
+    void set_port_velocity(std::uint32_t port, Vector v)
+    {
+        detail::check(enmm_set_port_velocity(handle_, port, v.x, v.y));
+    }
+
+    /** Displacement that moved supports have reached at the end of the next step. */
+    void set_port_displacement(std::uint32_t port, Vector u)
+    {
+        detail::check(enmm_set_port_displacement(handle_, port, u.x, u.y));
+    }
+
+    /** How one input varies within a step; `of` is the block or the port where it has one. */
+    void set_interpolation_of(enmm_input input, enmm_interpolation mode, std::uint32_t of = 0)
+    {
+        detail::check(enmm_set_input_interpolation(handle_, input, of, mode));
+    }
+
+    /** Inputs that were set since the last step act at once from the start of the next one. */
+    void jump() { detail::check(enmm_jump(handle_)); }
+
+    // Parameters.
+
+    std::size_t parameter_count() const { return detail::number<std::size_t>(handle_, enmm_parameter_count); }
+
+    std::uint32_t find_parameter(const std::string &name) const
+    {
+        std::uint32_t parameter = 0;
+        detail::check(enmm_find_parameter(handle_, name.c_str(), &parameter));
+        return parameter;
+    }
+
+    std::string parameter_name(std::uint32_t parameter) const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_parameter_name(handle_, parameter, out, capacity, written);
+        });
+    }
+
+    std::string parameter_unit(std::uint32_t parameter) const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_parameter_unit(handle_, parameter, out, capacity, written);
+        });
+    }
+
+    double parameter(const std::string &name) const
+    {
+        double value = 0;
+        detail::check(enmm_get_parameter(handle_, find_parameter(name), &value));
+        return value;
+    }
+
+    void set_parameter(const std::string &name, double value)
+    {
+        detail::check(enmm_set_parameter(handle_, find_parameter(name), value));
+    }
+
     // Ports.
 
     std::size_t port_count() const { return detail::number<std::size_t>(handle_, enmm_port_count); }
@@ -329,6 +387,12 @@ public:
     }
 
     void restore(const State &state) { detail::check(enmm_state_restore(handle_, state.handle())); }
+
+    /** As restore, but this model keeps its parameters; the state may be of one that differs in them. */
+    void restore_keeping_parameters(const State &state)
+    {
+        detail::check(enmm_state_restore_with(handle_, state.handle(), ENMM_KEEP_PARAMETERS));
+    }
 
     std::vector<std::uint8_t> serialize(const State &state) const
     {

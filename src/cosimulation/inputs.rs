@@ -7,9 +7,9 @@
 use std::fmt::Display;
 
 use crate::geometry::Vector;
-use crate::state::{Inputs, PortKind};
+use crate::state::{Inputs, Port, PortKind};
 
-use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX};
+use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX, VELOCITY_MAX};
 use super::{Cosimulation, CosimulationError};
 
 impl Cosimulation {
@@ -117,6 +117,39 @@ impl Cosimulation {
         Ok(())
     }
 
+    /// Sets the particle velocity (m/s) of the wave that comes in through a quiet boundary, or the velocity with which the
+    /// supports of a fixity move. It acts in dynamic stages, beside what the case says.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, or a port that does not exist or is of another kind.
+    pub fn set_port_velocity(&mut self, port: usize, velocity: Vector) -> Result<(), CosimulationError> {
+        let kinds = [PortKind::Quiet, PortKind::Fix];
+        let name = self.check_port(port, &kinds, "a port of a quiet boundary or of a fixity")?;
+        vector(&format_args!("velocity of port {name}"), velocity, VELOCITY_MAX, "m/s")?;
+        self.aims.remove(&port);
+        self.set(|inputs| replace(&mut inputs.port_velocity[port], velocity));
+        Ok(())
+    }
+
+    /// Sets the displacement (m) that the supports of a fixity have reached at the end of the next communication step,
+    /// counted from their place before a host has moved them; they go there at a steady velocity, and stay.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, or a port that does not exist or is of another kind.
+    pub fn set_port_displacement(&mut self, port: usize, displacement: Vector) -> Result<(), CosimulationError> {
+        let name = self.check_port(port, &[PortKind::Fix], "a port of a fixity")?;
+        vector(&format_args!("displacement of port {name}"), displacement, LEVEL_MAX, "m")?;
+        self.aims.insert(port, displacement);
+        self.progress.changed = true;
+        Ok(())
+    }
+
+    /// Makes all inputs that have been set since the last step act at once from the start of the next one, also where
+    /// inputs are interpolated: an anchor is lost. What is set after this call goes on its way from there.
+    pub fn jump(&mut self) {
+        self.simulation.drive().jump();
+    }
+
     /// Checks that a block exists.
     pub(super) fn check_block(&self, block: u32) -> Result<(), CosimulationError> {
         let count = self.simulation.model().covers.block_count();
@@ -128,14 +161,19 @@ impl Cosimulation {
     }
 
     fn check_port(&self, port: usize, kinds: &[PortKind], what: &str) -> Result<&str, CosimulationError> {
-        match self.ports().get(port) {
-            Some(found) if kinds.contains(&found.kind) => Ok(&found.name),
-            Some(found) => Err(CosimulationError::value("port", &found.name, what, "use the input of its own kind")),
-            None => {
-                let limit = format!("less than the number of ports, {}", self.ports().len());
-                Err(CosimulationError::value("port", port, &limit, "name the place by `[[port]]` in the case"))
-            }
+        let found = self.port(port)?;
+        if kinds.contains(&found.kind) {
+            return Ok(&found.name);
         }
+        Err(CosimulationError::value("port", &found.name, what, "use the input of its own kind"))
+    }
+
+    /// A port.
+    pub(super) fn port(&self, port: usize) -> Result<&Port, CosimulationError> {
+        self.ports().get(port).ok_or_else(|| {
+            let limit = format!("less than the number of ports, {}", self.ports().len());
+            CosimulationError::value("port", port, &limit, "name the place by `[[port]]` in the case")
+        })
     }
 
     /// Sets inputs; `change` returns whether one is new.

@@ -190,6 +190,9 @@ impl Cosimulation {
         } else {
             drive.arrive();
         }
+        if interval.end - self.grid_time() <= same {
+            self.progress.changed |= self.stop_aimed();
+        }
         let doublings = |steps: u64| (steps.saturating_sub(self.progress.origin) / JUDGED_FROM).checked_ilog2();
         if doublings(self.simulation.state().step) > doublings(interval.steps_before) {
             interval.info.doubt = self.doubt();
@@ -248,15 +251,39 @@ impl Cosimulation {
         (SAME_TIME * dt + SUM_ERROR * t.abs()).min(0.1 * dt)
     }
 
-    /// Lets inputs that have changed jump or move to their new values.
+    /// Lets inputs that have changed jump or move to their new values, and fixities go where they are to be.
     fn set_drive(&mut self, end: f64) {
         let (start, now) = (self.progress.start, self.simulation.time());
-        let linear = self.progress.interpolation == Interpolation::Linear;
+        let common = self.progress.interpolation;
+        let others = self.ways.iter().filter(|(_, way)| **way != common).map(|(input, _)| *input);
         let drive = self.simulation.drive();
-        if linear {
-            (drive.since, drive.until) = (now, start + end);
-        } else {
-            drive.arrive();
+        match common {
+            Interpolation::Linear => {
+                (drive.since, drive.until) = (now, start + end);
+                others.for_each(|input| drive.from.take_over(input, &drive.to));
+            }
+            Interpolation::Hold => {
+                let before = drive.from.clone();
+                drive.jump();
+                for input in others {
+                    drive.from.take_over(input, &before);
+                    (drive.since, drive.until) = (now, start + end);
+                }
+            }
         }
+        for (&port, &aim) in &self.aims {
+            let velocity = (aim - drive.moved[port]) / (start + end - now);
+            (drive.from.port_velocity[port], drive.to.port_velocity[port]) = (velocity, velocity);
+        }
+    }
+
+    /// Stops the fixities that have gone where they were to be; returns whether there were any.
+    fn stop_aimed(&mut self) -> bool {
+        let aims = std::mem::take(&mut self.aims);
+        let drive = self.simulation.drive();
+        for &port in aims.keys() {
+            (drive.from.port_velocity[port], drive.to.port_velocity[port]) = Default::default();
+        }
+        !aims.is_empty()
     }
 }

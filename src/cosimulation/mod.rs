@@ -10,13 +10,14 @@ mod saved;
 mod threads;
 mod tuning;
 
-pub use crate::state::{Event, EventKind, PortKind, Quantity};
+pub use crate::state::{Event, EventKind, Input, PortKind, Quantity};
 pub use error::CosimulationError;
 pub use interval::{Interval, StepInfo};
 pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -79,6 +80,12 @@ impl Forces {
     }
 }
 
+/// Interpolation of single inputs.
+type Ways = BTreeMap<Input, Interpolation>;
+
+/// Displacements (m) by port.
+type Aims = BTreeMap<usize, Vector>;
+
 /// A model in the hands of a host.
 ///
 /// Time 0 is the start of the first dynamic stage: static stages before it are the initial equilibrium, which
@@ -89,6 +96,10 @@ pub struct Cosimulation {
     simulation: Simulation,
     hash: String,
     parameters: Parameters,
+    /// Displacements (m) that the fixities of ports reach at the end of the next communication step.
+    aims: Aims,
+    /// Inputs that go their own way through a communication step.
+    ways: Ways,
     /// State from which the part of an internal step was taken, when the model stands between two grid points.
     grid: Option<Box<State>>,
     progress: Progress,
@@ -115,6 +126,8 @@ impl Cosimulation {
             simulation,
             hash,
             parameters,
+            aims: Aims::new(),
+            ways: Ways::new(),
             grid: None,
             progress: Progress::default(),
             backup,
@@ -272,9 +285,39 @@ impl Cosimulation {
         &self.simulation.state().drive.to
     }
 
-    /// How inputs go through a communication step from now on.
+    /// How all inputs go through a communication step from now on.
     pub fn set_interpolation(&mut self, interpolation: Interpolation) {
         self.progress.interpolation = interpolation;
+        self.ways.clear();
+    }
+
+    /// How one input goes through a communication step from now on; that of a port of a block is the input of its block.
+    ///
+    /// # Errors
+    /// A block or a port that does not exist.
+    pub fn set_interpolation_of(
+        &mut self,
+        input: Input,
+        interpolation: Interpolation,
+    ) -> Result<(), CosimulationError> {
+        let input = match input {
+            Input::Block(block) => {
+                self.check_block(block)?;
+                input
+            }
+            Input::Port(port) => match self.port(port as usize)? {
+                Port { kind: PortKind::Block, block, .. } => Input::Block(block.number()),
+                _ => input,
+            },
+            _ => input,
+        };
+        self.ways.insert(input, interpolation);
+        Ok(())
+    }
+
+    /// How one input goes through a communication step.
+    pub fn interpolation_of(&self, input: Input) -> Interpolation {
+        self.ways.get(&input).copied().unwrap_or(self.progress.interpolation)
     }
 
     /// How inputs go through a communication step.

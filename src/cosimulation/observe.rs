@@ -1,15 +1,16 @@
 //! Outputs for a host: ports and totals. All of them follow from the state alone.
 
-use crate::contact::{ContactHistory, ContactState, VertexEdge};
-use crate::cover::BlockId;
+use crate::contact::{ContactHistory, ContactState, Support, VertexEdge};
+use crate::cover::{self, BlockId};
 use crate::geometry::Vector;
 use crate::model::{ContactView, Simulation};
 use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
 
 use super::{Cosimulation, Forces};
 
-/// A port as hosts see it. A block fills all but the last three; a boundary displacement, velocity and stress; joints
-/// the last three.
+/// A port as hosts see it. A block fills all up to the stress; a boundary displacement, velocity and stress; joints
+/// normal and shear force and slip; a quiet boundary displacement, velocity and traction; a fixity displacement,
+/// velocity and reaction.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PortState {
     /// Displacement of the block's mass centroid, or the mean along the boundary (m).
@@ -30,10 +31,14 @@ pub struct PortState {
     pub shear_force: f64,
     /// Largest accumulated slip of a contact (m).
     pub slip: f64,
+    /// Mean traction of a quiet boundary on the rock (Pa).
+    pub traction: Vector,
+    /// Force of the supports of a fixity on the rock (N/m).
+    pub reaction: Vector,
 }
 
 /// Numbers of a port as outputs show them: the structures of C and Python in this order, and the FMUs.
-pub const PORT_QUANTITIES: [Quantity<PortState>; 14] = [
+pub const PORT_QUANTITIES: [Quantity<PortState>; 18] = [
     Quantity::plain("displacement_x", "m", "Displacement, x", |port| port.displacement.x),
     Quantity::plain("displacement_y", "m", "Displacement, y up", |port| port.displacement.y),
     Quantity::plain("velocity_x", "m/s", "Velocity, x", |port| port.velocity.x),
@@ -59,6 +64,14 @@ pub const PORT_QUANTITIES: [Quantity<PortState>; 14] = [
         port.shear_force
     }),
     Quantity::plain("slip", "m", "Largest accumulated slip along the joints", |port| port.slip),
+    Quantity::plain("traction_x", "Pa", "Mean traction of the quiet boundary on the rock, x", |port| port.traction.x),
+    Quantity::plain("traction_y", "Pa", "Mean traction of the quiet boundary on the rock, y", |port| port.traction.y),
+    Quantity::plain("reaction_x", "N/m", "Force of the moved supports on the rock per metre, x", |port| {
+        port.reaction.x
+    }),
+    Quantity::plain("reaction_y", "N/m", "Force of the moved supports on the rock per metre, y", |port| {
+        port.reaction.y
+    }),
 ];
 
 /// Sums and extremes over the whole model.
@@ -161,6 +174,43 @@ impl Cosimulation {
             PortKind::Block => self.block_port(port.block),
             PortKind::Boundary => self.boundary_port(port),
             PortKind::Joint => self.joint_port(port),
+            PortKind::Quiet => {
+                let reaction = self.reaction(port);
+                let length: f64 =
+                    port.edges.iter().map(|&edge| self.simulation.model().boundary.reference_length(edge)).sum();
+                PortState { traction: reaction / length, ..self.boundary_port(port) }
+            }
+            PortKind::Fix => {
+                let motion = if port.edges.is_empty() { self.held_point(port) } else { self.boundary_port(port) };
+                PortState { reaction: self.reaction(port), ..motion }
+            }
+        }
+    }
+
+    /// Supports of a port that hold, with their indices.
+    fn supports(&self, port: &Port) -> impl Iterator<Item = (usize, &Support)> {
+        let supports = self.simulation.model().supports.iter().enumerate();
+        supports.filter(|(_, support)| port.fixities.contains(&support.fix))
+    }
+
+    /// Force (N/m) of the supports of a port on the rock in the last internal step.
+    fn reaction(&self, port: &Port) -> Vector {
+        let state = self.simulation.state();
+        let is_frozen = port.kind == PortKind::Quiet;
+        let bears = |support: &Support| is_frozen || state.fix_active[support.fix as usize];
+        let own = self.supports(port).filter(|(_, support)| bears(support) && !state.removed[support.block]);
+        own.map(|(k, support)| support.direction * state.support_force[k]).sum()
+    }
+
+    /// Motion of the point that a port holds.
+    fn held_point(&self, port: &Port) -> PortState {
+        let state = self.simulation.state();
+        let Some((_, support)) = self.supports(port).next() else { return PortState::default() };
+        let sample = |field: &[Vector]| cover::sample(&support.covers, &support.weights, field);
+        PortState {
+            displacement: sample(&state.displacement),
+            velocity: sample(&state.velocity),
+            ..PortState::default()
         }
     }
 
@@ -229,7 +279,7 @@ impl Cosimulation {
         let mut lengths: Vec<(BlockId, f64)> = match port.kind {
             PortKind::Block => vec![(port.block, 1.0)],
             PortKind::Boundary => Vec::new(),
-            PortKind::Joint => return [0.0; 3],
+            PortKind::Joint | PortKind::Quiet | PortKind::Fix => return [0.0; 3],
         };
         let boundary = &self.simulation.model().boundary;
         for &edge in &port.edges {

@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::state::bytes::{self, BytesError, Keeper};
 
 use super::tuning::Parameters;
-use super::{Cosimulation, CosimulationError, Forces, Progress};
+use super::{Aims, Cosimulation, CosimulationError, Forces, Input, PortKind, Progress, Ways};
 
 /// The state of a model at one instant, with the inputs that hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,6 +21,8 @@ pub struct Saved {
     dt: f64,
     /// Values of the parameters.
     parameters: Vec<f64>,
+    aims: Aims,
+    ways: Ways,
     state: State,
     grid: Option<Box<State>>,
     progress: Progress,
@@ -36,6 +38,8 @@ impl Saved {
             family: parameters.family.clone(),
             dt: simulation.model().dt,
             parameters: parameters.values.clone(),
+            aims: Aims::new(),
+            ways: Ways::new(),
             state: simulation.state().clone(),
             grid: None,
             progress: Progress::default(),
@@ -72,7 +76,8 @@ impl Cosimulation {
     /// The state now.
     pub fn save(&self) -> Saved {
         let saved = Saved::of(&self.simulation, &self.hash, &self.parameters);
-        Saved { grid: self.grid.clone(), progress: self.progress, ..saved }
+        let (aims, ways, grid) = (self.aims.clone(), self.ways.clone(), self.grid.clone());
+        Saved { aims, ways, grid, progress: self.progress, ..saved }
     }
 
     /// Goes back to a saved state of this model. The numbers of one that [`Cosimulation::save`] made, or that was
@@ -156,7 +161,7 @@ impl Cosimulation {
     }
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
-        let Saved { hash: _, family: _, dt: _, parameters, state, grid, progress, checked: _ } = saved;
+        let Saved { hash: _, family: _, dt: _, parameters, aims, ways, state, grid, progress, checked: _ } = saved;
         fit::length("parameters", parameters.len(), self.parameters.list.len())?;
         for (parameter, &value) in self.parameters.list.iter().zip(parameters) {
             let (low, high) = (parameter.low.min(parameter.start), parameter.high.max(parameter.start));
@@ -164,6 +169,19 @@ impl Cosimulation {
         }
         let Progress { origin, start, started: _, initial_residual, changed: _, interpolation: _, host_time, forces } =
             *progress;
+        for input in ways.keys() {
+            let (what, index, count) = match *input {
+                Input::Block(block) => ("block", block as usize, state.removed.len()),
+                Input::Port(port) => ("port", port as usize, self.ports().len()),
+                _ => continue,
+            };
+            fit::at_most(format_args!("interpolation of {what}"), index as u64 + 1, count as u64)?;
+        }
+        for (&port, aim) in aims {
+            let is_fix = self.ports().get(port).is_some_and(|port| port.kind == PortKind::Fix);
+            fit::between("port of a displacement", f64::from(u8::from(is_fix)), 1.0, 1.0)?;
+            fit::number("displacement of a port", aim.norm(), fit::LENGTH)?;
+        }
         self.simulation.check(state)?;
         fit::at_most("origin", origin, state.step)?;
         fit::between("start", start, 0.0, fit::TIME)?;
@@ -184,6 +202,8 @@ impl Cosimulation {
     /// Keeps the state that a failure goes back to.
     pub(super) fn keep(&mut self) {
         let values = &self.parameters.values;
+        self.backup.aims.clone_from(&self.aims);
+        self.backup.ways.clone_from(&self.ways);
         self.backup.overwrite(self.simulation.state(), self.grid.as_deref(), self.progress, values);
     }
 
@@ -191,6 +211,8 @@ impl Cosimulation {
     pub(super) fn roll_back(&mut self) {
         self.serial += 1;
         self.parameters.values.clone_from(&self.backup.parameters);
+        self.aims.clone_from(&self.backup.aims);
+        self.ways.clone_from(&self.backup.ways);
         self.progress = self.backup.give(&mut self.simulation, &mut self.grid);
     }
 
@@ -198,6 +220,8 @@ impl Cosimulation {
     fn return_to(&mut self, saved: &Saved) {
         self.serial += 1;
         self.parameters.values.clone_from(&saved.parameters);
+        self.aims.clone_from(&saved.aims);
+        self.ways.clone_from(&saved.ways);
         self.progress = saved.give(&mut self.simulation, &mut self.grid);
     }
 

@@ -8,7 +8,7 @@ use crate::contact::{
     Roughness, Unloaded,
 };
 use crate::geometry::Vector;
-use crate::state::{Counters, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
+use crate::state::{Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
 
 use super::Simulation;
 use super::case::StageKind;
@@ -150,7 +150,7 @@ impl Simulation {
             damping: _,
             water_density: _,
             bolts: _,
-            drive: Drive { from, to, since, until },
+            drive: Drive { from, to, since, until, before: Course { end, rate }, moved },
             events,
             ledger,
             counters,
@@ -174,6 +174,12 @@ impl Simulation {
         self.check_events(events)?;
         number("drive.since", *since, TIME)?;
         number("drive.until", *until, TIME)?;
+        number("drive.before.end", *end, TIME)?;
+        let ports = self.model().ports.len();
+        for (what, list) in [("drive.before.rate", rate), ("drive.moved", moved)] {
+            length(what, list.len(), ports)?;
+            vectors(what, list, RATE)?;
+        }
         check_ledger(ledger)?;
         check_counters(counters)
     }
@@ -345,7 +351,10 @@ impl Simulation {
             block_moment,
             port_traction,
             port_pressure,
+            port_velocity,
         } = inputs;
+        length(format_args!("{of}.port_velocity"), port_velocity.len(), ports)?;
+        vectors(&format!("{of}.port_velocity"), port_velocity, RATE)?;
         vector(format_args!("{of}.gravity"), *gravity, RATE)?;
         vector(format_args!("{of}.base_acceleration"), *base_acceleration, RATE)?;
         number(format_args!("{of}.water_level"), *water_level, LENGTH)?;

@@ -7,6 +7,23 @@ use crate::geometry::Vector;
 
 use super::{Model, PortKind};
 
+/// One of the inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Input {
+    /// Gravity.
+    Gravity,
+    /// Acceleration of the base.
+    BaseAcceleration,
+    /// Height of the water.
+    WaterLevel,
+    /// Factor on the strength of joints.
+    StrengthFactor,
+    /// Force and moment of a block.
+    Block(u32),
+    /// Traction, pressure or velocity of a port.
+    Port(u32),
+}
+
 /// Values that a host sets; each holds until it is set again.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
@@ -26,15 +43,40 @@ pub struct Inputs {
     pub port_traction: Vec<Vector>,
     /// Fluid pressure on the faces of each port (Pa), pushing into the rock.
     pub port_pressure: Vec<f64>,
+    /// Particle velocity (m/s) of the wave that comes in through each quiet boundary, or velocity of each fixity that is
+    /// moved.
+    pub port_velocity: Vec<Vector>,
 }
 
 clone_without_allocating! {
     Inputs {
         gravity base_acceleration water_level strength_factor block_force block_moment port_traction port_pressure
+        port_velocity
     }
 }
 
 impl Inputs {
+    /// Takes over one input of others.
+    pub fn take_over(&mut self, input: Input, others: &Inputs) {
+        match input {
+            Input::Gravity => self.gravity = others.gravity,
+            Input::BaseAcceleration => self.base_acceleration = others.base_acceleration,
+            Input::WaterLevel => self.water_level = others.water_level,
+            Input::StrengthFactor => self.strength_factor = others.strength_factor,
+            Input::Block(block) => {
+                let block = block as usize;
+                self.block_force[block] = others.block_force[block];
+                self.block_moment[block] = others.block_moment[block];
+            }
+            Input::Port(port) => {
+                let port = port as usize;
+                self.port_traction[port] = others.port_traction[port];
+                self.port_pressure[port] = others.port_pressure[port];
+                self.port_velocity[port] = others.port_velocity[port];
+            }
+        }
+    }
+
     /// The values that the case starts with.
     pub fn of(model: &Model) -> Self {
         let (blocks, ports) = (model.covers.block_count(), model.ports.len());
@@ -47,13 +89,18 @@ impl Inputs {
             block_moment: vec![0.0; blocks],
             port_traction: vec![Vector::zeros(); ports],
             port_pressure: vec![0.0; ports],
+            port_velocity: vec![Vector::zeros(); ports],
         };
         for (k, port) in model.ports.iter().enumerate() {
-            if port.kind == PortKind::Block {
-                inputs.block_force[port.block] += port.force;
-                inputs.block_moment[port.block] += port.scalar;
-            } else {
-                (inputs.port_traction[k], inputs.port_pressure[k]) = (port.force, port.scalar);
+            match port.kind {
+                PortKind::Block => {
+                    inputs.block_force[port.block] += port.force;
+                    inputs.block_moment[port.block] += port.scalar;
+                }
+                PortKind::Boundary | PortKind::Joint => {
+                    (inputs.port_traction[k], inputs.port_pressure[k]) = (port.force, port.scalar);
+                }
+                PortKind::Quiet | PortKind::Fix => {}
             }
         }
         inputs
@@ -71,14 +118,31 @@ pub struct Drive {
     pub since: f64,
     /// End of the change (s); at or before `since` for a jump.
     pub until: f64,
+    /// The course of the velocities of ports before `since`.
+    pub before: Course,
+    /// Displacement (m) by which a host has moved the fixity of each port.
+    pub moved: Vec<Vector>,
 }
 
-clone_without_allocating!(Drive { from to since until });
+clone_without_allocating!(Drive { from to since until before moved });
+
+/// The last way of the velocities of ports: forces act for a kick that begins before a change of the inputs.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Course {
+    /// When it ended (s).
+    pub end: f64,
+    /// Rate (m/s²) of each velocity until then.
+    pub rate: Vec<Vector>,
+}
+
+clone_without_allocating!(Course { end rate });
 
 impl Drive {
     /// Inputs that hold for ever.
     pub fn hold(inputs: Inputs) -> Self {
-        Self { from: inputs.clone(), to: inputs, since: 0.0, until: 0.0 }
+        let ports = vec![Vector::zeros(); inputs.port_velocity.len()];
+        let before = Course { end: 0.0, rate: ports.clone() };
+        Self { from: inputs.clone(), to: inputs, since: 0.0, until: 0.0, before, moved: ports }
     }
 
     /// Share of the way at time `t` (s).
@@ -93,8 +157,26 @@ impl Drive {
 
     /// Ends the change at once: the values are those of `to`.
     pub fn arrive(&mut self) {
+        self.end_way(self.until);
         self.from.clone_from(&self.to);
         self.until = self.since;
+    }
+
+    /// Makes the values those of `to` as if they had always been so.
+    pub fn jump(&mut self) {
+        self.from.clone_from(&self.to);
+        self.until = self.since;
+        self.before.rate.fill(Vector::zeros());
+    }
+
+    /// Notes the rates of velocities on a way that ends at a time (s).
+    fn end_way(&mut self, end: f64) {
+        if self.is_moving() {
+            let over = 1.0 / (self.until - self.since);
+            let ways = self.to.port_velocity.iter().zip(&self.from.port_velocity);
+            self.before.rate.iter_mut().zip(ways).for_each(|(rate, (to, from))| *rate = (to - from) * over);
+            self.before.end = end;
+        }
     }
 
     /// Takes back a jump that has not acted yet.
@@ -107,6 +189,7 @@ impl Drive {
     /// Makes the values at time `t` (s) the start of what is left of the way.
     pub fn pass(&mut self, t: f64) {
         let share = self.share(t);
+        self.end_way(t);
         let (from, to) = (&mut self.from, &self.to);
         from.gravity = mix(from.gravity, to.gravity, share);
         from.base_acceleration = mix(from.base_acceleration, to.base_acceleration, share);
@@ -116,6 +199,7 @@ impl Drive {
         mix_all(&mut from.block_moment, &to.block_moment, share);
         mix_all(&mut from.port_traction, &to.port_traction, share);
         mix_all(&mut from.port_pressure, &to.port_pressure, share);
+        mix_all(&mut from.port_velocity, &to.port_velocity, share);
         self.since = t;
     }
 
@@ -148,6 +232,26 @@ impl Drive {
     pub fn block(&self, block: BlockId, share: f64) -> (Vector, f64) {
         let force = mix(self.from.block_force[block], self.to.block_force[block], share);
         (force, mix(self.from.block_moment[block], self.to.block_moment[block], share))
+    }
+
+    /// Velocity (m/s) of a port at a share of the way.
+    pub fn velocity(&self, port: usize, share: f64) -> Vector {
+        mix(self.from.port_velocity[port], self.to.port_velocity[port], share)
+    }
+
+    /// Velocity (m/s) of a port, its mean over a time from `a` to `b` (s).
+    pub fn mean_velocity(&self, port: usize, a: f64, b: f64) -> Vector {
+        let start = self.from.port_velocity[port];
+        let at = |t: f64| match t {
+            t if t < self.before.end => start + self.before.rate[port] * (t - self.before.end),
+            t if t < self.since => start,
+            t => self.velocity(port, self.share(t)),
+        };
+        let bends = [self.before.end, self.since, self.until].map(|t| t.clamp(a, b));
+        let [p, q, r] = if bends[1] <= bends[2] { bends } else { [bends[0], bends[1], bends[1]] };
+        let pieces = [[a, p], [p, q.max(p)], [q.max(p), r.max(p)], [r.max(p), b]];
+        let of_piece = |[from, to]: [f64; 2]| at(0.5 * (from + to)) * (to - from).max(0.0);
+        pieces.map(of_piece).iter().sum::<Vector>() / (b - a)
     }
 
     /// Traction and pressure (Pa) of a port at a share of the way.

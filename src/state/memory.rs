@@ -78,7 +78,7 @@ impl State {
             support_rest,
             fix_active,
             bolts,
-            drive: Drive { from, to, since: _, until: _ },
+            drive: Drive { from, to, since: _, until: _, before, moved },
             events: happened,
             removed,
             // A few entries for every law and stage of the case, or numbers.
@@ -106,7 +106,7 @@ impl State {
             ("near pairs", neighbours.bytes()),
             ("plastic strain", plastic.bytes()),
             ("supports and bolts", sum(&[support_force, support_rest, fix_active, bolts])),
-            ("inputs", inputs(from) + inputs(to)),
+            ("inputs", inputs(from) + inputs(to) + sum(&[&before.rate, moved])),
             ("events", events(happened) + removed.bytes()),
         ]
     }
@@ -184,12 +184,13 @@ fn inputs(inputs: &Inputs) -> usize {
         block_moment,
         port_traction,
         port_pressure,
+        port_velocity,
         gravity: _,
         base_acceleration: _,
         water_level: _,
         strength_factor: _,
     } = inputs;
-    sum(&[block_force, block_moment, port_traction, port_pressure])
+    sum(&[block_force, block_moment, port_traction, port_pressure, port_velocity])
 }
 
 fn events(events: &Events) -> usize {

@@ -13,7 +13,7 @@ mod quantity;
 mod workspace;
 
 pub use events::{Event, EventKind, Events};
-pub use inputs::{Drive, Inputs};
+pub use inputs::{Course, Drive, Input, Inputs};
 pub use integrator::{Buffers, OtherIntegrator};
 pub use ledger::{BALANCE, BoltEnergies, ENERGIES, Ledger};
 pub use memory::Part;

@@ -21,6 +21,17 @@ pub struct Fixity {
     pub covers: Vec<(CoverId, [bool; 2])>,
     /// Whether it holds from the start.
     pub active: bool,
+    /// Velocity (m/s) with which its supports move in dynamic stages.
+    pub velocity: Vector,
+    /// Port by which a host moves it.
+    pub port: Option<u32>,
+}
+
+impl Fixity {
+    /// Whether its supports may move: their work on the rock is then that of a load.
+    pub fn is_moved(&self) -> bool {
+        self.port.is_some() || self.velocity != Vector::zeros()
+    }
 }
 
 /// Kind of a port.
@@ -32,6 +43,10 @@ pub enum PortKind {
     Boundary,
     /// Joint faces: fluid pressure in, contact forces and slip out.
     Joint,
+    /// A quiet boundary: particle velocity of the incoming wave in, velocity and traction out.
+    Quiet,
+    /// Supports of a fixity: velocity or displacement in, reaction out.
+    Fix,
 }
 
 /// A named position where hosts exchange values with the model.
@@ -43,8 +58,10 @@ pub struct Port {
     pub kind: PortKind,
     /// The block, or the block of the first edge.
     pub block: BlockId,
-    /// Boundary edges; none for a block.
+    /// Boundary edges; none for a block and for a held point.
     pub edges: Vec<EdgeId>,
+    /// Fixities of its supports: those of a quiet boundary, or one of the case; none for others.
+    pub fixities: Vec<u32>,
     /// Force on the block (N/m) or traction on the boundary (Pa) at the start.
     pub force: Vector,
     /// Moment on the block (N·m/m) or pressure on the faces (Pa) at the start.
@@ -130,6 +147,8 @@ pub struct QuietBoundary {
     pub dashpots: u32,
     /// Particle velocity (m/s) of the wave that it lets in, if any.
     pub wave: Option<TimedRecord>,
+    /// Port by which a host lets in another.
+    pub port: Option<u32>,
     /// Free-field column on its far side, if any.
     pub column: Option<u32>,
 }

@@ -22,7 +22,7 @@ pub use friction::{delay_friction, delay_of};
 pub use guard::{Failure, StepError};
 pub use integrator::{Integrator, StepOutcome};
 pub use prepare::{begin_stage, prepare};
-pub use quiet::load_supports;
+pub use quiet::{load_supports, move_supports};
 pub use records::base_motion;
 pub use report::{
     StepReport, block_motion, energies, energies_at_velocities, mass_of_few, momentum, potential, speed_max, stored,

@@ -41,6 +41,22 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State) {
     }
 }
 
+/// Moves the supports of fixities to where they are at the end of a sub-step.
+pub fn move_supports(model: &Model, state: &mut State, step: &Substep) {
+    for (k, fixity) in model.fixities.iter().enumerate().filter(|(_, fixity)| fixity.is_moved()) {
+        let fix = k as u32;
+        let way = records::fixity_velocity(model, step.regime, state, [step.time, step.dt], fix) * step.dt;
+        if way == Vector::zeros() {
+            continue;
+        }
+        let own = model.supports.iter().zip(&mut state.support_rest).filter(|(support, _)| support.fix == fix);
+        own.for_each(|(support, rest)| *rest += way.dot(&support.direction));
+        if let Some(port) = fixity.port {
+            state.drive.moved[port as usize] += way;
+        }
+    }
+}
+
 /// Sets the supports for a sub-step: springs act by the position at its end (Eq. 23), dashpots by the mean of the
 /// velocities before and after it (Eqs. 46, 47).
 pub fn load_supports(model: &Model, state: &State, step: &Substep, motion: &MotionBuffers, rows: &mut [SupportRow]) {
@@ -57,6 +73,10 @@ pub fn load_supports(model: &Model, state: &State, step: &Substep, motion: &Moti
             Resistance::Spring => {
                 row.target = support.preload - support.stiffness * row.displacement;
                 row.viscosity = support.stiffness * theta * dt;
+                if model.fixities[support.fix as usize].is_moved() {
+                    let velocity = records::fixity_velocity(model, step.regime, state, [step.time, dt], support.fix);
+                    row.target += row.viscosity * velocity.dot(&support.direction);
+                }
                 continue;
             }
             Resistance::Dashpot(quiet) => quiet,

@@ -125,11 +125,11 @@ fn potential_at(model: &Model, state: &State, displacement: &[Vector]) -> f64 {
         .sum()
 }
 
-/// Energy (J/m) stored in the springs of contacts and supports.
+/// Energy (J/m) stored in the springs of contacts and of supports that do not move.
 pub fn stored(model: &Model, state: &State, workspace: &Workspace) -> f64 {
     let support = |row: &crate::contact::SupportRow| {
         let support = &model.supports[row.support as usize];
-        if support.is_dashpot() {
+        if support.is_dashpot() || model.fixities[support.fix as usize].is_moved() {
             return 0.0;
         }
         0.5 * (support.preload - support.stiffness * row.displacement).powi(2) / support.stiffness

@@ -1,6 +1,8 @@
 //! Layout of the bytes of a saved state of a co-simulation, for tests that change them.
 
-use enmm::cosimulation::Interpolation;
+use std::collections::BTreeMap;
+
+use enmm::cosimulation::{Input, Interpolation};
 use enmm::model::State;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +13,8 @@ pub struct Whole {
     pub family: String,
     pub dt: f64,
     pub parameters: Vec<f64>,
+    pub aims: BTreeMap<usize, enmm::geometry::Vector>,
+    pub ways: BTreeMap<Input, Interpolation>,
     pub state: State,
     pub grid: Option<Box<State>>,
     pub progress: Progress,

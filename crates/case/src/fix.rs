@@ -1,8 +1,9 @@
 //! Fixities of a case.
 
 use crate::keys::shared::PLACE;
-use crate::keys::unit::SUPPORT;
+use crate::keys::unit::{SPEED, SUPPORT};
 use crate::keys::{Range, keys, words};
+use crate::limits::VELOCITY_MAX;
 
 words! {
     /// Axes that a fixity holds.
@@ -36,6 +37,9 @@ keys! {
         pub axes: Axes,
         /// Support stiffness of points (N/m per metre) and edges (Pa/m); default: 1000 and 100 times the contact's.
         pub stiffness: Option<f64> => Range::above(0.0).to(1e20).of(SUPPORT).hint("leave it out for the default"),
+        /// Velocity (m/s) with which a held point or edge moves in dynamic stages.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub velocity: Option<[f64; 2]> => Range::within(VELOCITY_MAX).of(SPEED).hint("plates move at mm/s"),
         /// Whether it holds from the start.
         pub active: bool = true,
     }

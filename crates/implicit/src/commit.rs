@@ -6,7 +6,8 @@ use enmm::geometry::Vector;
 use enmm::internals::contact::ContactState;
 use enmm::internals::state::{Ledger, State, Workspace};
 use enmm::internals::step::{
-    Regime, StepReport, potential, settle_contacts, settle_supports, speed_max, stored, strain, unbalanced,
+    Regime, StepReport, move_supports, potential, settle_contacts, settle_supports, speed_max, stored, strain,
+    unbalanced,
 };
 
 use super::balance::norm;
@@ -44,6 +45,7 @@ impl ImplicitStep<'_> {
         let setting = self.model.contact_setting(laws, frames, selection);
         settle_contacts(setting, &step, [velocity, &motion.predicted], contacts, histories, outcomes, counters);
         settle_supports(&supports.rows, support_force);
+        move_supports(self.model, self.state, &step);
     }
 
     /// Positions, velocities 2Δu/dt − v₀ and accelerations of the end (Eq. 67).
@@ -68,7 +70,7 @@ impl ImplicitStep<'_> {
     /// Works of this sub-step (Eq. 71): every force by what its point has moved, the forces of the end by their share.
     fn implicit_works(&mut self, implicit: &Implicit, inertia: &Inertia) -> Ledger {
         let mut works = self.bearing_works(inertia);
-        works.external_work = self.load_work(inertia);
+        works.external_work += self.load_work(inertia);
         let buffers = &self.buffers;
         let change = buffers.start.internal.iter().zip(&buffers.internal).zip(&buffers.moved);
         let numerical: f64 = change.map(|((before, after), moved)| (before - after).dot(moved)).sum();
@@ -103,7 +105,9 @@ impl ImplicitStep<'_> {
         }
         for (row, before) in workspace.supports.rows.iter().zip(&buffers.start.supports) {
             let support = &self.model.supports[row.support as usize];
-            works.support_work += mean(row.force, *before) * support.sample(&buffers.moved);
+            let is_moved = self.model.fixities[support.fix as usize].is_moved();
+            let work = if is_moved { &mut works.external_work } else { &mut works.support_work };
+            *work += mean(row.force, *before) * support.sample(&buffers.moved);
         }
         works
     }

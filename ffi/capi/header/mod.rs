@@ -78,7 +78,7 @@ fn plain() -> Result<String, String> {
         line_length: 120,
         ..Config::default()
     };
-    let mut builder = Builder::new().with_config(config).include_item("enmm_interpolation");
+    let mut builder = Builder::new().with_config(config).include_item("enmm_interpolation").include_item("enmm_input");
     let sources = root().join("ffi/capi/src");
     for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/parameters", "abi/observe", "abi/state"] {
         builder = builder.with_src(sources.join(file).with_extension("rs"));

@@ -16,7 +16,7 @@ const UNSEEN: [&str; 2] = ["struct_size", "reserved"];
 const TUPLES: [&str; 4] = ["enmm_step_info", "enmm_energies", "enmm_totals", "enmm_port_state"];
 
 /// Enumerations: name in C, class in Python, prefix of the members in C, documentation.
-const ENUMERATIONS: [[&str; 4]; 5] = [
+const ENUMERATIONS: [[&str; 4]; 6] = [
     ["enmm_contact_state", "ContactState", "ENMM_CONTACT_", "`state` of a contact."],
     [
         "enmm_event_kind",
@@ -25,6 +25,7 @@ const ENUMERATIONS: [[&str; 4]; 5] = [
         "Kind of an event. Each happens once to a block or joint, and only in dynamic stages.",
     ],
     ["enmm_port_type", "PortKind", "ENMM_PORT_", "Kind of a port."],
+    ["enmm_input", "Input", "ENMM_INPUT_", "An input."],
     ["enmm_interpolation", "Interpolation", "ENMM_INTERPOLATION_", "How inputs go through a communication step."],
     ["enmm_log_level", "LogLevel", "ENMM_LOG_", "Weight of a message."],
 ];

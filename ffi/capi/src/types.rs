@@ -82,6 +82,28 @@ pub enum enmm_port_type {
     ENMM_PORT_BOUNDARY = 1,
     /// Faces of joints: takes fluid pressure.
     ENMM_PORT_JOINT = 2,
+    /// A quiet boundary: takes the particle velocity of the wave that comes in (enmm_set_port_velocity).
+    ENMM_PORT_QUIET = 3,
+    /// A held point or edge: takes the velocity or the displacement with which it is moved.
+    ENMM_PORT_FIX = 4,
+}
+
+/// An input, for enmm_set_input_interpolation.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_input {
+    /// Gravity.
+    ENMM_INPUT_GRAVITY = 0,
+    /// Acceleration of the base.
+    ENMM_INPUT_BASE_ACCELERATION = 1,
+    /// Height of the water.
+    ENMM_INPUT_WATER_LEVEL = 2,
+    /// Factor on the strength of joints.
+    ENMM_INPUT_STRENGTH_FACTOR = 3,
+    /// Force and moment of the block that the index names.
+    ENMM_INPUT_BLOCK = 4,
+    /// Inputs of the port that the index names.
+    ENMM_INPUT_PORT = 5,
 }
 
 /// State of a contact.

@@ -98,6 +98,8 @@ pub enum Quantity {
     PortTraction(usize, Axis),
     /// Pressure on a boundary or in joints (Pa).
     PortPressure(usize),
+    /// Velocity of the wave that comes in through a quiet boundary, or of supports (m/s).
+    PortVelocity(usize, Axis),
     /// Forces on all blocks (N/m).
     BlockForce(Axis),
     /// Moments on all blocks (N·m/m).
@@ -139,6 +141,8 @@ pub struct Variable {
     pub start: Option<f64>,
     /// Least and greatest value of a number that can be set.
     pub limits: Option<(f64, f64)>,
+    /// Whether a parameter may be set after initialization.
+    pub is_tunable: bool,
     /// Number of elements of an array; `None` for a scalar.
     pub length: Option<usize>,
     /// Name of the port that it belongs to.
@@ -257,9 +261,11 @@ fn token(variables: &[Variable], hash: &str, version: Version) -> String {
 
 /// The kind of a port of a case.
 pub fn port_kind(port: &Port) -> PortKind {
-    match (port.boundary, port.joint) {
-        (Some(_), _) => PortKind::Boundary,
-        (_, Some(_)) => PortKind::Joint,
+    match port {
+        Port { boundary: Some(_), .. } => PortKind::Boundary,
+        Port { joint: Some(_), .. } => PortKind::Joint,
+        Port { quiet: Some(_), .. } => PortKind::Quiet,
+        Port { fix: Some(_), .. } => PortKind::Fix,
         _ => PortKind::Block,
     }
 }
@@ -309,6 +315,7 @@ impl Rows {
             causality,
             start: None,
             limits: None,
+            is_tunable: false,
             length: None,
             port: None,
             quantity,
@@ -349,6 +356,7 @@ impl Rows {
             let row = self.parameter(&p.name, &p.description, p.unit, Type::Real, Quantity::Parameter(k));
             // The value of the case itself is always allowed.
             (row.start, row.limits) = (Some(p.start), Some((p.low.min(p.start), p.high.max(p.start))));
+            row.is_tunable = p.is_tunable;
         }
         let what = "Threads that a step uses; results do not depend on it";
         let row = self.parameter("threads", what, "", Type::Integer, Quantity::Threads);
@@ -393,6 +401,15 @@ impl Rows {
                 let start = port.force[component];
                 add(&format!("force_{letter}"), &what, "N/m", start, Quantity::PortForce(k, axis));
             }
+            let velocity = Quantity::PortVelocity(k, axis);
+            if kind == PortKind::Quiet {
+                let what = format!("Particle velocity of the wave that comes in through the quiet boundary, {letter}");
+                add(&format!("wave_{letter}"), &what, "m/s", 0.0, velocity);
+            }
+            if kind == PortKind::Fix {
+                let what = format!("Velocity with which the held place is moved, {letter}");
+                add(&format!("velocity_{letter}"), &what, "m/s", 0.0, velocity);
+            }
             if kind == PortKind::Boundary {
                 let what = format!("Traction on the boundary, {letter}, global axes, per reference length");
                 let start = port.traction[component];
@@ -413,6 +430,7 @@ impl Rows {
                 let what = "Fluid pressure in the joints, pushing on both faces";
                 add("pressure", what, "Pa", port.pressure, pressure);
             }
+            PortKind::Quiet | PortKind::Fix => {}
         }
     }
 
@@ -495,12 +513,19 @@ const PORT_OUTPUTS: [&str; 11] = [
     "contact_force_y",
 ];
 
+/// Outputs of a quiet boundary.
+const OF_QUIET: [&str; 6] =
+    ["displacement_x", "displacement_y", "velocity_x", "velocity_y", "traction_x", "traction_y"];
+
 /// Outputs of a port of a kind.
 fn port_outputs(kind: PortKind) -> &'static [&'static str] {
     match kind {
         PortKind::Block => &PORT_OUTPUTS,
         PortKind::Boundary => &PORT_OUTPUTS[..7],
         PortKind::Joint => &["normal_force", "shear_force", "slip"],
+        PortKind::Quiet => &OF_QUIET,
+        // Its velocity is an input.
+        PortKind::Fix => &["displacement_x", "displacement_y", "reaction_x", "reaction_y"],
     }
 }
 
@@ -591,10 +616,10 @@ mod tests {
 
     #[test]
     fn every_output_of_ports_and_blocks_is_in_a_table_of_the_engine() {
-        let kinds = [PortKind::Block, PortKind::Joint];
+        let kinds = [PortKind::Block, PortKind::Joint, PortKind::Quiet, PortKind::Fix];
         let ports = || kinds.into_iter().flat_map(port_outputs);
         assert!(ports().all(|name| place_of(&PORT_QUANTITIES, name).is_some()));
-        assert_eq!(ports().count(), PORT_QUANTITIES.len());
+        assert!(PORT_QUANTITIES.iter().all(|quantity| ports().any(|name| *name == quantity.name)));
         let is_shown = |name: &&str| BLOCK_QUANTITIES.iter().any(|quantity| quantity.column == *name);
         assert!(FIRST_BLOCK_OUTPUTS.iter().all(is_shown));
     }

@@ -32,6 +32,8 @@ pub enum Group {
     Traction(usize),
     /// Pressure of a port.
     Pressure(usize),
+    /// Velocity of a port.
+    Velocity(usize),
 }
 
 impl Group {
@@ -46,6 +48,7 @@ impl Group {
             Quantity::BlockForce(_) | Quantity::BlockMoment => Some(Self::Blocks),
             Quantity::PortTraction(k, _) => Some(Self::Traction(k)),
             Quantity::PortPressure(k) => Some(Self::Pressure(k)),
+            Quantity::PortVelocity(k, _) => Some(Self::Velocity(k)),
             _ => None,
         }
     }
@@ -128,6 +131,7 @@ impl Values {
             Group::Blocks => self.push_blocks(table, model),
             Group::Traction(k) => model.set_boundary_traction(k, vector(&|axis| Quantity::PortTraction(k, axis))),
             Group::Pressure(k) => model.set_pressure(k, scalar(Quantity::PortPressure(k))),
+            Group::Velocity(k) => model.set_port_velocity(k, vector(&|axis| Quantity::PortVelocity(k, axis))),
         }
     }
 

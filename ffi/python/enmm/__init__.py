@@ -30,6 +30,7 @@ from ._abi import (
     BlockFlag,
     ContactState,
     EventKind,
+    Input,
     Interpolation,
     LogLevel,
     PortKind,
@@ -60,7 +61,7 @@ from ._ports import Port, Ports
 from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
-from ._types import Event
+from ._types import Event, Inputs, PortInputs
 from ._values import BLOCK_FIELDS, Energies, PortState, StepInfo, Totals
 
 __version__ = "0.1.0"
@@ -92,6 +93,8 @@ __all__ = [
     "Fos",
     "Frame",
     "Frames",
+    "Input",
+    "Inputs",
     "Interpolation",
     "InvalidArgumentError",
     "Library",
@@ -104,6 +107,7 @@ __all__ = [
     "Parameter",
     "Parameters",
     "Port",
+    "PortInputs",
     "PortKind",
     "PortState",
     "Ports",

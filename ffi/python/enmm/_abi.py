@@ -62,6 +62,27 @@ class PortKind(IntEnum):
     """A part of the outer boundary: takes traction and pressure."""
     JOINT = 2
     """Faces of joints: takes fluid pressure."""
+    QUIET = 3
+    """A quiet boundary: takes the particle velocity of the wave that comes in."""
+    FIX = 4
+    """A held point or edge: takes the velocity or the displacement with which it is moved."""
+
+
+class Input(IntEnum):
+    """An input."""
+
+    GRAVITY = 0
+    """Gravity."""
+    BASE_ACCELERATION = 1
+    """Acceleration of the base."""
+    WATER_LEVEL = 2
+    """Height of the water."""
+    STRENGTH_FACTOR = 3
+    """Factor on the strength of joints."""
+    BLOCK = 4
+    """Force and moment of the block that the index names."""
+    PORT = 5
+    """Inputs of the port that the index names."""
 
 
 class Interpolation(IntEnum):
@@ -233,6 +254,10 @@ class PortState(ctypes.Structure):
         ("normal_force", c_double),
         ("shear_force", c_double),
         ("slip", c_double),
+        ("traction_x", c_double),
+        ("traction_y", c_double),
+        ("reaction_x", c_double),
+        ("reaction_y", c_double),
     ]
 
 
@@ -284,6 +309,16 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_set_boundary_pressure": (c_int32, [c_void_p, c_uint32, c_double]),
     "enmm_set_joint_pressure": (c_int32, [c_void_p, c_uint32, c_double]),
     "enmm_set_strength_factor": (c_int32, [c_void_p, c_double]),
+    "enmm_set_port_velocity": (c_int32, [c_void_p, c_uint32, c_double, c_double]),
+    "enmm_set_port_displacement": (c_int32, [c_void_p, c_uint32, c_double, c_double]),
+    "enmm_jump": (c_int32, [c_void_p]),
+    "enmm_set_input_interpolation": (c_int32, [c_void_p, c_int32, c_uint32, c_int32]),
+    "enmm_get_inputs": (
+        c_int32,
+        [c_void_p, POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double)],
+    ),
+    "enmm_get_block_force": (c_int32, [c_void_p, c_uint32, POINTER(c_double), POINTER(c_double)]),
+    "enmm_get_port_inputs": (c_int32, [c_void_p, c_uint32, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
     "enmm_set_interpolation": (c_int32, [c_void_p, c_int32]),
     "enmm_get_interpolation": (c_int32, [c_void_p, POINTER(c_int32)]),
     "enmm_parameter_count": (c_int32, [c_void_p, POINTER(c_size_t)]),

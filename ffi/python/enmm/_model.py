@@ -12,14 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._abi import EventKind, Interpolation
+from ._abi import EventKind, Input, Interpolation
 from ._closing import Closing
 from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
 from ._errors import BusyError, DeadHandleError, Status, invalid
 from ._library import Library, load_library
 from ._parameters import Parameters
 from ._ports import Port, Ports
-from ._types import Event
+from ._types import Event, Inputs, PortInputs
 from ._values import Energies, StepInfo, Totals
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
@@ -237,6 +237,14 @@ class Model(Closing):
     def interpolation(self, mode: Interpolation) -> None:
         self._core.call("enmm_set_interpolation", index("interpolation", mode))
 
+    def set_interpolation_of(self, input: Input, mode: Interpolation, of: SupportsIndex = 0) -> None:
+        """Sets how one input goes through a communication step; `of` is the block or the port where it has one.
+
+        Holds from the next step on, and is part of saved states. `interpolation` sets that of all inputs.
+        """
+        whole = index("input", input), index("of", of), index("mode", mode)
+        self._core.call("enmm_set_input_interpolation", *whole)
+
     def set_log(self, callback: LogFunction | None) -> None:
         """Sets the function that gets level and text of every message of this model, or None for none.
 
@@ -307,6 +315,48 @@ class Model(Closing):
     def set_joint_pressure(self, port: Port | str | SupportsIndex, p: float) -> None:
         """Sets fluid pressure (Pa) in the joints of a joint port; positive pushes both faces into their rock, apart."""
         self._core.call("enmm_set_joint_pressure", self._port(port), number(p))
+
+    def set_port_velocity(self, port: Port | str | SupportsIndex, vx: float, vy: float) -> None:
+        """Sets the velocity (m/s) of the supports of a held place, or of the wave that comes in at a quiet boundary.
+
+        It acts in dynamic stages, beside what the case says.
+        """
+        self._core.call("enmm_set_port_velocity", self._port(port), number(vx), number(vy))
+
+    def set_port_displacement(self, port: Port | str | SupportsIndex, ux: float, uy: float) -> None:
+        """Sets the displacement (m) that the supports of a held place have reached at the end of the next step.
+
+        It counts from their place before a host has moved them. They go there at a steady velocity, and stay.
+        """
+        self._core.call("enmm_set_port_displacement", self._port(port), number(ux), number(uy))
+
+    def jump(self) -> None:
+        """Makes all inputs that have been set since the last step act at once from the start of the next one.
+
+        That is what a lost anchor does, also where inputs are interpolated. What is set after this call goes its way
+        from there.
+        """
+        self._core.call("enmm_jump")
+
+    @property
+    def inputs(self) -> Inputs:
+        """Gravity, acceleration of the base, height of the water and factor on strengths that are set now."""
+        gravity, base = (c_double * 2)(), (c_double * 2)()
+        level, factor = c_double(), c_double()
+        self._core.call("enmm_get_inputs", gravity, base, byref(level), byref(factor))
+        return Inputs(tuple(gravity), tuple(base), level.value, factor.value)
+
+    def block_force(self, block: SupportsIndex) -> tuple[float, float, float]:
+        """Force x, y (N/m) and moment (N*m/m) that are set on a block now."""
+        force, moment = (c_double * 2)(), c_double()
+        self._core.call("enmm_get_block_force", index("block", block), force, byref(moment))
+        return force[0], force[1], moment.value
+
+    def port_inputs(self, port: Port | str | SupportsIndex) -> PortInputs:
+        """Traction, pressure and velocity that are set on a port now; 0 where its kind takes no such input."""
+        traction, pressure, velocity = (c_double * 2)(), c_double(), (c_double * 2)()
+        self._core.call("enmm_get_port_inputs", self._port(port), traction, byref(pressure), velocity)
+        return PortInputs(tuple(traction), pressure.value, tuple(velocity))
 
     def set_strength_factor(self, f: float) -> None:
         """Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied.

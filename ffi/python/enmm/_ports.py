@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from ctypes import c_int32, c_size_t, c_uint32
 
 from . import _abi
-from ._abi import PortKind
+from ._abi import Input, Interpolation, PortKind
 from ._core import Core, number, text
 from ._errors import invalid
 from ._values import PortState
@@ -50,6 +50,21 @@ class Port:
     def set_traction(self, tx: float, ty: float) -> None:
         """Sets traction (Pa) on a boundary port, as `Model.set_boundary_traction`."""
         self._core.call("enmm_set_boundary_traction", self.index, number(tx), number(ty))
+
+    def set_velocity(self, vx: float, vy: float) -> None:
+        """Sets the velocity (m/s) of a moved support, or of the wave that comes in through a quiet boundary.
+
+        As `Model.set_port_velocity`.
+        """
+        self._core.call("enmm_set_port_velocity", self.index, number(vx), number(vy))
+
+    def set_displacement(self, ux: float, uy: float) -> None:
+        """Sets the displacement (m) of a moved support, as `Model.set_port_displacement`."""
+        self._core.call("enmm_set_port_displacement", self.index, number(ux), number(uy))
+
+    def set_interpolation(self, mode: Interpolation) -> None:
+        """Sets how the inputs of this port go through a communication step, from the next one on."""
+        self._core.call("enmm_set_input_interpolation", int(Input.PORT), self.index, int(mode))
 
     def set_pressure(self, p: float) -> None:
         """Sets fluid pressure (Pa) on a boundary port or in the joints of a joint port.

@@ -1,4 +1,4 @@
-"""Events of models."""
+"""Events and inputs of models."""
 
 from typing import NamedTuple
 
@@ -21,3 +21,27 @@ class Event(NamedTuple):
     """Higher id of two blocks that overlap; None for events of other kinds."""
     depth: float = 0.0
     """Depth of an overlap when it was found (m); 0 for events of other kinds."""
+
+
+class Inputs(NamedTuple):
+    """Inputs of the whole model that are set now."""
+
+    gravity: tuple[float, ...]
+    """Gravity x, y (m/s2)."""
+    base_acceleration: tuple[float, ...]
+    """Acceleration of the base x, y (m/s2)."""
+    water_level: float
+    """Height of the water (m); 0 without water."""
+    strength_factor: float
+    """Factor on the strength of all joints."""
+
+
+class PortInputs(NamedTuple):
+    """Inputs of a port that are set now; 0 where its kind takes no such input."""
+
+    traction: tuple[float, ...]
+    """Traction x, y on the boundary (Pa)."""
+    pressure: float
+    """Pressure on the faces (Pa)."""
+    velocity: tuple[float, ...]
+    """Velocity x, y (m/s) of the supports, or of the wave that comes in."""

@@ -142,6 +142,14 @@ class PortState(NamedTuple):
     """Sum of the magnitudes of the shear forces along the joints (N/m)."""
     slip: float
     """Largest accumulated slip along the joints (m)."""
+    traction_x: float
+    """Mean traction of the quiet boundary on the rock, x (Pa)."""
+    traction_y: float
+    """Mean traction of the quiet boundary on the rock, y (Pa)."""
+    reaction_x: float
+    """Force of the moved supports on the rock per metre, x (N/m)."""
+    reaction_y: float
+    """Force of the moved supports on the rock per metre, y (N/m)."""
 
 
 BLOCK_FIELDS: dict[str, str] = {

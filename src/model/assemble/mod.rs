@@ -28,7 +28,7 @@ use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
-use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, State, Water};
+use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, QuietBoundary, State, Water};
 
 use joints::Joints;
 use locator::Locator;
@@ -151,7 +151,7 @@ fn model(
     let boundary = Boundary::new(&covers, outlines, &DetectionRule::default());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
-    let (loads, ports, water) = on_faces(case, &positions, &boundary)?;
+    let (loads, ports, water) = on_faces(case, &positions, &boundary, &quiets.quiets)?;
     let model = Model {
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers), &averaging),
         averaging,
@@ -208,9 +208,14 @@ fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet
 /// Loads, ports and water on faces of the rock.
 type OnFaces = (Vec<Load>, Vec<Port>, Option<Water>);
 
-fn on_faces(case: &Case, positions: &Locator, boundary: &Boundary) -> Result<OnFaces, Invalid> {
+fn on_faces(
+    case: &Case,
+    positions: &Locator,
+    boundary: &Boundary,
+    quiets: &[QuietBoundary],
+) -> Result<OnFaces, Invalid> {
     let faces = ports::Faces { boundary, tolerance: positions.tolerance };
-    Ok((loads(case, positions, &faces)?, ports::ports(case, positions, &faces)?, ports::water(case, &faces)?))
+    Ok((loads(case, positions, &faces)?, ports::ports(case, positions, &faces, quiets)?, ports::water(case, &faces)?))
 }
 
 /// Shortest stable step (s) of all rocks.
@@ -314,7 +319,13 @@ fn fixities(case: &Case, positions: &Locator, stiffness: f64) -> Result<(Vec<Fix
     for (k, fix) in case.fixes.iter().enumerate() {
         let key = format!("fix[{k}]");
         let axes = [fix.axes != case::Axes::Y, fix.axes != case::Axes::X];
-        let mut fixity = Fixity { name: fix.name.clone(), covers: Vec::new(), active: fix.active };
+        let mut fixity = Fixity {
+            name: fix.name.clone(),
+            covers: Vec::new(),
+            active: fix.active,
+            velocity: Vector::from(fix.velocity.unwrap_or_default()),
+            port: port_of(case, |port| port.fix.is_some() && port.fix == fix.name),
+        };
         let mut held = Vec::new();
         if let Some(point) = fix.point {
             let stiff = fix.stiffness.unwrap_or(POINT_RATIO * stiffness * positions.covers.mesh.size);
@@ -345,6 +356,11 @@ fn fixities(case: &Case, positions: &Locator, stiffness: f64) -> Result<(Vec<Fix
         fixities.push(fixity);
     }
     Ok((fixities, supports))
+}
+
+/// The port of a kind.
+fn port_of(case: &Case, is_own: impl Fn(&case::Port) -> bool) -> Option<u32> {
+    case.ports.iter().position(is_own).map(|port| port as u32)
 }
 
 /// Stiffness of supported edges over that of contacts.

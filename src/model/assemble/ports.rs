@@ -4,7 +4,7 @@ use crate::contact::{Boundary, EdgeId};
 use crate::geometry::{Point, Vector, segment};
 use crate::mechanics::LoadedFace;
 use crate::model::case::{self, Case, Invalid, Load};
-use crate::state::{Port, PortKind, Water, WaterSurface};
+use crate::state::{Port, PortKind, QuietBoundary, Water, WaterSurface};
 
 use super::locator::Locator;
 
@@ -76,22 +76,42 @@ fn nothing_on(key: &str, [[a, b], [c, d]]: [[f64; 2]; 2], joints: bool) -> Inval
 }
 
 /// The ports of a case.
-pub(super) fn ports(case: &Case, positions: &Locator, faces: &Faces) -> Result<Vec<Port>, Invalid> {
+pub(super) fn ports(
+    case: &Case,
+    positions: &Locator,
+    faces: &Faces,
+    quiets: &[QuietBoundary],
+) -> Result<Vec<Port>, Invalid> {
     let mut ports = Vec::new();
     for (k, port) in case.ports.iter().enumerate() {
         let key = |name: &str| format!("port[{k}].{name}");
+        let held = port.fix.as_ref().and_then(|name| case.fixes.iter().position(|fix| fix.name.as_ref() == Some(name)));
+        let absorbing = port.quiet.and_then(|edge| case.quiet_of(edge));
+        let fixities = match (held, absorbing) {
+            (Some(fix), _) => vec![fix as u32],
+            (_, Some(quiet)) => vec![quiets[quiet].springs, quiets[quiet].dashpots],
+            (None, None) => Vec::new(),
+        };
         let (kind, edges, force, scalar) = if let Some(segment) = port.boundary {
             (PortKind::Boundary, faces.on(&key("boundary"), segment, false)?, port.traction, port.pressure)
         } else if let Some(segment) = port.joint {
             (PortKind::Joint, faces.on(&key("joint"), segment, true)?, [0.0; 2], port.pressure)
+        } else if let Some(edge) = port.quiet {
+            (PortKind::Quiet, faces.on(&key("quiet"), edge, false)?, [0.0; 2], 0.0)
+        } else if let Some(fix) = held.map(|fix| &case.fixes[fix]) {
+            let edges = fix.edge.map_or(Ok(Vec::new()), |edge| faces.on(&key("fix"), edge, false))?;
+            (PortKind::Fix, edges, [0.0; 2], 0.0)
         } else {
             (PortKind::Block, Vec::new(), port.force, port.moment)
         };
         let block = match edges.first() {
             Some(&edge) => faces.boundary.block[edge],
-            None => positions.block(&key("block"), port.block.unwrap_or_default())?,
+            None => {
+                let point = held.and_then(|fix| case.fixes[fix].point).or(port.block);
+                positions.block(&key("block"), point.unwrap_or_default())?
+            }
         };
-        ports.push(Port { name: port.name.clone(), kind, block, edges, force: Vector::from(force), scalar });
+        ports.push(Port { name: port.name.clone(), kind, block, edges, fixities, force: Vector::from(force), scalar });
     }
     Ok(ports)
 }

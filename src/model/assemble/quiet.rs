@@ -7,7 +7,7 @@ use crate::model::case::{self, Axes, Axis, BaseMotionKind, Case, Invalid};
 use crate::state::{BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, QuietBoundary, TimedRecord};
 
 use super::locator::{Locator, OuterPiece};
-use super::{EDGE_RATIO, in_situ, stiffness_over};
+use super::{EDGE_RATIO, in_situ, port_of, stiffness_over};
 
 /// Height of a lattice row over the mesh size: cells of columns are about as high, so that waves in both travel alike.
 const ROW: f64 = 0.866_025_403_784_438_6;
@@ -68,7 +68,8 @@ impl Ground<'_> {
                 .wave
                 .map(|wave| timed(self.case, &quiet.table, Vector::from(wave) * quiet.scale, quiet.stage.as_deref()));
             let number = made.quiets.len() as u32;
-            made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave, column: None });
+            let port = port_of(self.case, |port| port.quiet.and_then(|edge| self.case.quiet_of(edge)) == Some(k));
+            made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave, port, column: None });
             self.hold(&mut made.quiets[number as usize], quiet.axes, &pieces, fixities, supports);
             let fix = made.quiets[number as usize].dashpots;
             supports.extend(pieces.iter().flat_map(|piece| self.dashpots(piece, number, fix)));
@@ -79,7 +80,7 @@ impl Ground<'_> {
             let number = made.quiets.len() as u32;
             let column = self.column(&key, side.edge)?;
             let own = Some(made.columns.len() as u32);
-            made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave: None, column: own });
+            made.quiets.push(QuietBoundary { springs: 0, dashpots: 0, wave: None, port: None, column: own });
             self.hold(&mut made.quiets[number as usize], side.axes, &pieces, fixities, supports);
             for piece in &pieces {
                 let first = supports.len() as u32;

@@ -15,7 +15,7 @@ use super::kick::acceleration;
 use super::settle::{settle_contacts, settle_supports};
 use super::turn::turn;
 use super::works::{contact_works, external_work, extra};
-use super::{Regime, StepOutcome, StepReport, Substep, Wanted, guard, report};
+use super::{Regime, StepOutcome, StepReport, Substep, Wanted, guard, quiet, report};
 
 /// Ends a sub-step; the outcome holds the report of its start when one is wanted.
 pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace: &mut Workspace) -> StepOutcome {
@@ -50,6 +50,7 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
         drift(step.dt, &motion.predicted, &mut state.displacement, sums);
     }
     turn(model, step, mass_matrix, &sweep.push, motion, &mut state.displacement, sums);
+    quiet::move_supports(model, state, step);
     settle_bolts(model, &supports.bolts, &state.displacement, &mut state.bolts);
     std::mem::swap(&mut state.velocity, &mut motion.predicted);
     state.ledger.add_works(&works, 1.0);

@@ -11,7 +11,7 @@ pub(super) fn extra(model: &Model, state: &State, step: &Substep) -> Vector {
     acceleration(model, state, step) - model.gravity
 }
 
-/// Works of contacts, supports and bolts: each force by the mean of the velocities before and after it (Eq. 18).
+/// Works of contacts, supports and bolts, those of moved supports as of loads: each force by the mean of the velocities before and after it (Eq. 18).
 pub(super) fn contact_works(
     model: &Model,
     kick: f64,
@@ -28,7 +28,12 @@ pub(super) fn contact_works(
     for row in &supports.rows {
         let support = &model.supports[row.support as usize];
         let velocity = 0.5 * (support.sample(before) + support.sample(after));
-        let work = if support.is_dashpot() { &mut works.radiation } else { &mut works.support_work };
+        let is_moved = model.fixities[support.fix as usize].is_moved();
+        let work = match support.is_dashpot() {
+            true => &mut works.radiation,
+            false if is_moved => &mut works.external_work,
+            false => &mut works.support_work,
+        };
         *work += row.force * velocity * kick;
     }
     for row in &supports.bolts {

@@ -28,6 +28,10 @@ fn validate_fix(key: &Key, fix: &Fix) -> Check {
         let message = format!("`{place}` is held without springs; remove `stiffness`, or hold `point` or `edge`");
         return fail(&key.field("stiffness"), message);
     }
+    if fix.velocity.is_some() && (fix.region.is_some() || fix.block.is_some()) {
+        let message = format!("`{place}` is held without springs and cannot be moved; hold `point` or `edge`");
+        return fail(&key.field("velocity"), message);
+    }
     if fix.name.is_none() && !fix.active {
         return fail(
             &key.field("active"),

@@ -62,7 +62,7 @@ impl Case {
         if let Some(water) = &self.water {
             ports::validate_water(&root.field("water"), water)?;
         }
-        ports::validate_ports(&root.field("port"), &self.ports)?;
+        ports::validate_ports(&root.field("port"), self)?;
         if let Some(notes) = &self.fmu {
             fmu_notes(&root.field("fmu"), notes)?;
         }

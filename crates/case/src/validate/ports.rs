@@ -1,8 +1,8 @@
 //! Checks of water and ports.
 
 use super::checks::{each, only, points, segment, unique};
-use crate::key::{Check, Key, fail};
-use crate::{Port, Water, WaterSurface};
+use crate::key::{Check, Key, fail, list};
+use crate::{Case, Fix, Port, Water, WaterSurface};
 
 /// Checks the water of a case.
 ///
@@ -54,8 +54,12 @@ fn validate_table(key: &Key, table: &[[f64; 2]]) -> Check {
 ///
 /// # Errors
 /// The first value that cannot be used.
-pub fn validate_ports(key: &Key, ports: &[Port]) -> Check {
+pub fn validate_ports(key: &Key, case: &Case) -> Check {
+    let ports = &case.ports;
     each(key, ports, validate_port)?;
+    for (k, port) in ports.iter().enumerate() {
+        validate_held(&key.index(k), case, port)?;
+    }
     unique(key, "port", ports.iter().map(|port| Some(port.name.as_str())))
 }
 
@@ -70,12 +74,43 @@ fn validate_port(key: &Key, port: &Port) -> Check {
         );
         return fail(&key.field("name"), message);
     }
-    let places =
-        [("block", port.block.is_some()), ("boundary", port.boundary.is_some()), ("joint", port.joint.is_some())];
+    let places = [
+        ("block", port.block.is_some()),
+        ("boundary", port.boundary.is_some()),
+        ("joint", port.joint.is_some()),
+        ("quiet", port.quiet.is_some()),
+        ("fix", port.fix.is_some()),
+    ];
     let place = only(key, &places)?;
     port.boundary.as_ref().map_or(Ok(()), |edge| segment(&key.field("boundary"), edge))?;
     port.joint.as_ref().map_or(Ok(()), |edge| segment(&key.field("joint"), edge))?;
     validate_start(key, port, place)
+}
+
+/// Checks that the quiet boundary or the fixity of a port is there, and can be moved.
+fn validate_held(key: &Key, case: &Case, port: &Port) -> Check {
+    if let Some(edge) = port.quiet
+        && case.quiet_of(edge).is_none()
+    {
+        let edges: Vec<String> = case.quiets.iter().map(|quiet| format!("{:?}", quiet.edge)).collect();
+        let message =
+            format!("is {edge:?}, must be the edge of a `[[quiet]]`: {}", list(edges.iter().map(String::as_str)));
+        return fail(&key.field("quiet"), message);
+    }
+    let Some(name) = &port.fix else { return Ok(()) };
+    let named = |fix: &&Fix| fix.name.as_ref() == Some(name);
+    match case.fixes.iter().find(named) {
+        None => {
+            let names = list(case.fixes.iter().filter_map(|fix| fix.name.as_deref()));
+            fail(&key.field("fix"), format!("is {name:?}, must be the name of a `[[fix]]`: {names}"))
+        }
+        Some(fix) if fix.point.is_none() && fix.edge.is_none() => {
+            let message =
+                format!("the fixity {name:?} is held without springs and cannot be moved; hold `point` or `edge`");
+            fail(&key.field("fix"), message)
+        }
+        Some(_) => Ok(()),
+    }
 }
 
 /// Checks that no values at the start are given but those of the kind of port.

@@ -1,10 +1,11 @@
 //! Inputs that the façade does not know in the form that hosts give them.
 
-use engine::cosimulation::PortKind;
+use engine::cosimulation::{Input, Interpolation, PortKind};
 use engine::geometry::Vector;
 
 use super::failure::{Failure, Outcome};
 use super::model::Model;
+use crate::types::{enmm_input, enmm_interpolation};
 
 impl Model {
     /// Sets force and moment of several blocks, or of none; `loads` holds Fx, Fy and M of each block of `ids`.
@@ -30,5 +31,61 @@ impl Model {
             return Err(Failure::invalid(format!("port: is {:?}, must be {must}; use its own input", found.name)));
         }
         Ok(self.inner.set_pressure(port as usize, pressure)?)
+    }
+
+    /// Sets how one input goes through a communication step, by numbers of C.
+    ///
+    /// # Errors
+    /// A number that no input and no way has, or a block or a port that does not exist.
+    pub fn set_interpolation_of(&mut self, input: i32, index: u32, mode: i32) -> Outcome {
+        let of = |kind: enmm_input| kind as i32 == input;
+        let own = match input {
+            _ if of(enmm_input::ENMM_INPUT_GRAVITY) => Input::Gravity,
+            _ if of(enmm_input::ENMM_INPUT_BASE_ACCELERATION) => Input::BaseAcceleration,
+            _ if of(enmm_input::ENMM_INPUT_WATER_LEVEL) => Input::WaterLevel,
+            _ if of(enmm_input::ENMM_INPUT_STRENGTH_FACTOR) => Input::StrengthFactor,
+            _ if of(enmm_input::ENMM_INPUT_BLOCK) => Input::Block(index),
+            _ if of(enmm_input::ENMM_INPUT_PORT) => Input::Port(index),
+            _ => return Err(Failure::invalid(format!("input: is {input}, must be a value of enmm_input, 0 to 5"))),
+        };
+        Ok(self.inner.set_interpolation_of(own, interpolation(mode)?)?)
+    }
+
+    /// Force (N/m) and moment (N·m/m) that are set on a block.
+    ///
+    /// # Errors
+    /// A block that does not exist.
+    pub fn block_force(&self, block: u32) -> Result<([f64; 2], f64), Failure> {
+        let inputs = self.inner.inputs();
+        let force = inputs.block_force.get(block as usize).ok_or_else(|| {
+            let count = inputs.block_force.len();
+            Failure::invalid(format!("block: is {block}, must be less than the number of blocks, {count}"))
+        })?;
+        Ok(([force.x, force.y], inputs.block_moment[block as usize]))
+    }
+
+    /// Traction (Pa), pressure (Pa) and velocity (m/s) that are set on a port.
+    ///
+    /// # Errors
+    /// A port that does not exist.
+    pub fn port_inputs(&self, port: u32) -> Result<([f64; 2], f64, [f64; 2]), Failure> {
+        self.port_name(port)?;
+        let (inputs, port) = (self.inner.inputs(), port as usize);
+        let [traction, velocity] = [inputs.port_traction[port], inputs.port_velocity[port]].map(|v| [v.x, v.y]);
+        Ok((traction, inputs.port_pressure[port], velocity))
+    }
+}
+
+/// The way that a number of C stands for.
+///
+/// # Errors
+/// Another number.
+pub fn interpolation(mode: i32) -> Result<Interpolation, Failure> {
+    let hold = enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32;
+    let linear = enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32;
+    match mode {
+        _ if mode == hold => Ok(Interpolation::Hold),
+        _ if mode == linear => Ok(Interpolation::Linear),
+        _ => Err(Failure::invalid(format!("mode: is {mode}, must be {hold} (hold) or {linear} (linear)"))),
     }
 }

@@ -10,6 +10,7 @@ use enmm_io::{LoadedCase, load_case, parse_case};
 
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
+use super::inputs::interpolation;
 use crate::numbers::enmm_block_state;
 use crate::types::{enmm_interpolation, enmm_log_level, enmm_status, enmm_step_info};
 
@@ -279,13 +280,7 @@ impl Model {
     /// # Errors
     /// An unknown way.
     pub fn set_interpolation(&mut self, mode: i32) -> Outcome {
-        let hold = enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32;
-        let linear = enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32;
-        let mode = match mode {
-            _ if mode == hold => Interpolation::Hold,
-            _ if mode == linear => Interpolation::Linear,
-            _ => return Err(Failure::invalid(format!("mode: is {mode}, must be {hold} (hold) or {linear} (linear)"))),
-        };
+        let mode = interpolation(mode)?;
         self.inner.set_interpolation(mode);
         Ok(())
     }

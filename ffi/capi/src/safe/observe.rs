@@ -172,6 +172,8 @@ impl Model {
             PortKind::Block => enmm_port_type::ENMM_PORT_BLOCK,
             PortKind::Boundary => enmm_port_type::ENMM_PORT_BOUNDARY,
             PortKind::Joint => enmm_port_type::ENMM_PORT_JOINT,
+            PortKind::Quiet => enmm_port_type::ENMM_PORT_QUIET,
+            PortKind::Fix => enmm_port_type::ENMM_PORT_FIX,
         })
     }
 

@@ -135,6 +135,7 @@ impl Instance {
             | Quantity::PortMoment(_)
             | Quantity::PortTraction(..)
             | Quantity::PortPressure(_)
+            | Quantity::PortVelocity(..)
             | Quantity::BlockForce(_)
             | Quantity::BlockMoment => {} // not outputs
         }

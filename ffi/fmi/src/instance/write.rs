@@ -2,7 +2,7 @@
 
 use crate::log::Status;
 use crate::phase::Call;
-use crate::table::{Causality, Type, Variable};
+use crate::table::{Causality, Quantity, Type, Variable};
 use crate::values::Group;
 
 use super::{Failure, Instance};
@@ -33,6 +33,7 @@ impl Instance {
             rest = others;
             match v.causality {
                 Causality::Input => {}
+                Causality::Parameter if v.is_tunable => {}
                 Causality::Parameter => self.allow(Call::SetParameter).map_err(|failure| {
                     format!("{}: {failure}; parameters hold from the end of initialization on", v.name)
                 })?,
@@ -55,6 +56,7 @@ impl Instance {
             self.values.set(reference, own);
             groups.extend(Group::of(v.quantity).map(|group| (group, reference)));
         }
+        self.tune(references)?;
         groups.sort_unstable();
         groups.dedup_by_key(|(group, _)| *group);
         for (group, reference) in groups {
@@ -63,6 +65,20 @@ impl Instance {
             pushed.map_err(|error| format!("{}: {error}", name(reference)))?;
         }
         Ok(())
+    }
+
+    /// Gives a model that has started the values of its tunable parameters among the variables; one that has not is built
+    /// anew at the end of initialization.
+    fn tune(&mut self, references: &[u32]) -> Result<(), Failure> {
+        if !self.model.is_started() {
+            return Ok(());
+        }
+        let value = |reference: &u32| match self.table.get(*reference)?.quantity {
+            Quantity::Parameter(k) => Some((k, self.values.get(*reference)[0])),
+            _ => None,
+        };
+        let tuned: Vec<(usize, f64)> = references.iter().filter_map(value).collect();
+        self.model.set_parameters(&tuned).map_err(|error| error.to_string())
     }
 
     /// The variable with a value reference and a type.
