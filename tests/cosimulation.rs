@@ -482,3 +482,24 @@ fn a_case_for_the_implicit_integrator_is_refused_with_its_remedy() {
         assert!(refused.contains(part), "{part}: {refused}");
     }
 }
+
+#[test]
+fn ports_are_found_by_name_and_their_blocks_take_forces_by_id_or_number() {
+    let mut slope = model("coupled_slope");
+    assert_eq!(["toe", "face", "plane"].map(|name| slope.find_port(name).unwrap()), [0, 1, 2]);
+    let error = slope.find_port("crest").unwrap_err();
+    assert!(matches!(error, CosimulationError::NoPort { .. }));
+    assert_eq!(error.to_string(), "no port is named \"crest\"; ports of the case: toe, face, plane");
+    let (id, number) = (slope.ports()[0].block, slope.port_block(0).unwrap());
+    assert_eq!(id.number(), number);
+    slope.set_block_force(id, [1e3, 2e3], 3.0).unwrap();
+    let by_id = slope.inputs().clone();
+    slope.set_block_force(number, [0.0, 0.0], 0.0).unwrap();
+    assert_ne!(*slope.inputs(), by_id);
+    slope.set_block_force(number, Vector::new(1e3, 2e3), 3.0).unwrap();
+    assert_eq!(*slope.inputs(), by_id);
+    let error = slope.set_block_force(u32::MAX, [0.0, 0.0], 0.0).unwrap_err().to_string();
+    assert!(error.starts_with("block: is 4294967295, must be less than the number of blocks, 13;"), "{error}");
+    let error = slope.port_block(3).unwrap_err().to_string();
+    assert!(error.starts_with("port: is 3, must be less than the number of ports, 3;"), "{error}");
+}

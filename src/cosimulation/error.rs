@@ -22,6 +22,14 @@ pub enum CosimulationError {
         /// Remedy.
         remedy: &'static str,
     },
+    /// No port of the case has a name.
+    #[error("no port is named {name:?}; ports of the case: {ports}")]
+    NoPort {
+        /// The name that was asked for.
+        name: String,
+        /// Names of the ports.
+        ports: String,
+    },
     /// A communication step does not begin where the model stands.
     #[error("t: is {given} s, must be the time of the model, {own} s; step from there, or restore a saved state")]
     Time {

@@ -1,11 +1,32 @@
 //! A model that a host drives through communication steps: inputs, transactional steps, events, ports, saved states.
 //! The C ABI and the FMUs are thin over [`Cosimulation`].
+//!
+//! A host that holds the toe of a slope, whose case names it by `[[port]]`:
+//!
+//! ```
+//! use enmm::geometry::Vector;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let case = std::path::Path::new("examples/cases/coupled_slope.toml");
+//! let mut slope = enmm_io::load_case(case)?.cosimulation()?;
+//! let toe = slope.find_port("toe")?;
+//! let block = slope.port_block(toe)?;
+//! let held = Vector::new(0.9e6, 0.56e6); // N/m; [0.9e6, 0.56e6] would do as well.
+//! slope.set_block_force(block, held, 0.0)?;
+//! slope.start()?;
+//! slope.set_block_force(block, held * 0.5, 0.0)?;
+//! slope.do_step(0.0, 0.01)?;
+//! assert!(slope.port_state(toe).displacement.x < 0.0, "the toe moves out of the slope");
+//! # Ok(())
+//! # }
+//! ```
 
 mod error;
 mod inputs;
 mod interval;
 mod observe;
 mod parameter;
+mod ports;
 mod saved;
 mod threads;
 
@@ -25,7 +46,7 @@ pub use crate::model::case::limits;
 use crate::model::case::{Case, Invalid, StageKind};
 use crate::model::settle;
 use crate::model::{BlockState, Simulation, SlopeFailure};
-use crate::state::{Inputs, Port, State};
+use crate::state::{Inputs, State};
 use crate::step::{StepReport, THREADS_FROM};
 use threads::Pool;
 
@@ -135,11 +156,6 @@ impl Cosimulation {
     /// Time (s) that the stages of the case cover together, static ones before the first dynamic one left out.
     pub fn stop_time(&self) -> f64 {
         stop_time(self.case())
-    }
-
-    /// Ports of the case, in its order.
-    pub fn ports(&self) -> &[Port] {
-        &self.simulation.model().ports
     }
 
     /// Events so far, in order; their times count as [`Cosimulation::time`] does.

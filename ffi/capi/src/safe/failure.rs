@@ -59,6 +59,7 @@ impl From<CosimulationError> for Failure {
     fn from(error: CosimulationError) -> Self {
         let status = match error {
             CosimulationError::Stage(_) => enmm_status::ENMM_INVALID_CASE,
+            CosimulationError::NoPort { .. } => enmm_status::ENMM_NOT_FOUND,
             CosimulationError::Value { .. } => enmm_status::ENMM_INVALID_ARGUMENT,
             CosimulationError::Time { .. } | CosimulationError::Stale => enmm_status::ENMM_WRONG_TIME,
             CosimulationError::Step(_) => enmm_status::ENMM_NUMERICAL_FAILURE,
