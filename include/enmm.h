@@ -298,6 +298,51 @@ typedef int32_t enmm_interpolation;
 #endif // __cplusplus
 
 /**
+ * What has a number and a name.
+ */
+enum enmm_name_kind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A joint trace, which events name by its number.
+   */
+  ENMM_NAME_JOINT = 0,
+  /**
+   * A joint law, which contacts name by its number.
+   */
+  ENMM_NAME_LAW = 1,
+  /**
+   * A rock, in the alphabetical order of their names.
+   */
+  ENMM_NAME_ROCK = 2,
+  /**
+   * A stage, in the order of the case.
+   */
+  ENMM_NAME_STAGE = 3,
+  /**
+   * A block.
+   */
+  ENMM_NAME_BLOCK = 4,
+  /**
+   * A place that the case names by `[[monitor]]`, in its order.
+   */
+  ENMM_NAME_MONITOR = 5,
+  /**
+   * A port, in the order of the case.
+   */
+  ENMM_NAME_PORT = 6,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_name_kind enmm_name_kind;
+#else
+typedef int32_t enmm_name_kind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * A model. The handle is a number that is never dereferenced: a NULL or dead handle is an error and never a crash.
  */
 typedef struct enmm_model enmm_model;
@@ -352,6 +397,32 @@ typedef struct enmm_step_info {
  * valid during the call. It must return: no longjmp, no exception.
  */
 typedef void (*enmm_log_callback)(void *user, enmm_log_level level, const char *message);
+
+/**
+ * A monitor now. Its velocity is that of half an internal step ago.
+ */
+typedef struct enmm_monitor_state {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Displacement, x (m).
+   */
+  double displacement_x;
+  /**
+   * Displacement, y up (m).
+   */
+  double displacement_y;
+  /**
+   * Velocity, x (m/s).
+   */
+  double velocity_x;
+  /**
+   * Velocity, y up (m/s).
+   */
+  double velocity_y;
+} enmm_monitor_state;
 
 /**
  * A block now. Velocities are those of half an internal step ago, as the method has them.
@@ -617,7 +688,7 @@ typedef struct enmm_contact {
    */
   enmm_contact_state state;
   /**
-   * Joint law: its place among the names of the laws of the case in alphabetical order, from 0.
+   * Joint law: its place among the names of the laws of the case in alphabetical order, from 0; see enmm_name.
    */
   uint32_t law;
   /**
@@ -671,7 +742,8 @@ typedef struct enmm_event {
    */
   enmm_event_kind kind;
   /**
-   * Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT; of two blocks that overlap the lower id.
+   * Block id; for a slip or a broken bond the number of the joint trace, or ENMM_NO_JOINT; of two blocks that
+   * overlap the lower id. enmm_name has the names.
    */
   uint32_t subject;
   /**
@@ -777,9 +849,17 @@ uint32_t enmm_abi_version(void);
 
 /**
  * Message of the last call that failed on the calling thread: fault, value, limit and remedy. It is empty when none
- * has failed, and valid until the next one fails on this thread or the thread ends.
+ * has failed.
+ *
+ * The address is the same for all calls of a thread and valid until the thread ends; the next call that fails there
+ * replaces the text. A message of more than 4095 bytes ends with "...".
  */
 const char *enmm_last_error(void);
+
+/**
+ * Name of a status, such as "ENMM_BUSY"; "unknown status" for a number that is none. The text is never freed.
+ */
+const char *enmm_status_name(int32_t status);
 
 /**
  * Builds the model of a case file. Nothing moves yet.
@@ -1015,6 +1095,39 @@ enmm_status enmm_set_interpolation(struct enmm_model *model, int32_t mode);
  * Errors: ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_get_interpolation(struct enmm_model *model, int32_t *mode);
+
+/**
+ * Returns the number of things of a kind, a value of enmm_name_kind. It never changes.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another number, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_name_count(struct enmm_model *model, int32_t kind, size_t *count);
+
+/**
+ * Writes the name of a thing by its kind, a value of enmm_name_kind, and its number, from 0, in UTF-8.
+ *
+ * What the case does not name has a stand-in: "joint[2]" is a joint of the case by its place there, "bedding trace 4"
+ * (or "joint_set[1] trace 4") a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9" any other joint trace,
+ * which a region of another law has parted or which surrounds an island, and "block 3" a block. `*written` gets the
+ * number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only that number.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a kind or a number that does not exist, ENMM_BUFFER_TOO_SMALL,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_name(struct enmm_model *model,
+                      int32_t kind,
+                      uint32_t index,
+                      char *out,
+                      size_t capacity,
+                      size_t *written);
+
+/**
+ * Writes the state of a monitor, by its place among the `[[monitor]]`s of the case. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or a struct_size that no version had,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_monitor_state(struct enmm_model *model, uint32_t monitor, struct enmm_monitor_state *out);
 
 /**
  * Returns the number of blocks, excavated ones included. It never changes.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::common::saved::Whole;
 use crate::common::{example as text_of, examples};
-use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
+use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, Named, apply};
 use enmm::geometry::Vector;
 use enmm::model::Mechanism;
 use enmm::model::bytes::{Keeper, decode, encode};
@@ -502,4 +502,36 @@ fn ports_are_found_by_name_and_their_blocks_take_forces_by_id_or_number() {
     assert!(error.starts_with("block: is 4294967295, must be less than the number of blocks, 13;"), "{error}");
     let error = slope.port_block(3).unwrap_err().to_string();
     assert!(error.starts_with("port: is 3, must be less than the number of ports, 3;"), "{error}");
+}
+
+#[test]
+fn things_have_the_names_of_the_case_or_stand_ins() {
+    let slope = model("fractured_slope");
+    let names = |model: &Cosimulation, kind| -> Vec<String> {
+        (0..model.name_count(kind)).map(|k| model.name(kind, k).unwrap()).collect()
+    };
+    let joints = names(&slope, Named::Joint);
+    let mut unlike = joints.clone();
+    unlike.sort();
+    unlike.dedup();
+    assert_eq!(unlike.len(), joints.len(), "each joint has a name of its own");
+    assert_eq!(joints[2..4], ["joint[2]", "joint_set[0] trace 0"]);
+    assert_eq!(joints.last().unwrap(), "joint_set[1] trace 52");
+    let bridged = model("step_path");
+    assert_eq!(names(&bridged, Named::Joint)[3..5], ["joint[3]", "rock bridge 4"]);
+    assert_eq!(names(&bridged, Named::Law), ["joint", "rock"]);
+    let error = slope.name(Named::Law, 9).unwrap_err().to_string();
+    assert!(error.starts_with("index: is 9, must be less than the number of joint laws,"), "{error}");
+}
+
+#[test]
+fn a_monitor_has_the_motion_of_its_place() {
+    let mut incline = model("block_on_incline");
+    go(&mut incline, 0.5);
+    let (displacement, velocity) = incline.monitor_state(0).unwrap();
+    let block = incline.block_states()[1];
+    // It stands in the middle of a block that slides without turning.
+    assert!((displacement - block.displacement).norm() < 1e-6 * block.displacement.norm());
+    assert!((velocity - block.velocity).norm() < 1e-6 * block.velocity.norm());
+    assert!(incline.monitor_state(1).is_err());
 }

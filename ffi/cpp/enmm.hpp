@@ -43,6 +43,7 @@ using BlockState = enmm_block_state;
 using Contact = enmm_contact;
 using Energies = enmm_energies;
 using Event = enmm_event;
+using MonitorState = enmm_monitor_state;
 using PortState = enmm_port_state;
 using StepInfo = enmm_step_info;
 using Totals = enmm_totals;
@@ -259,6 +260,33 @@ public:
     {
         auto state = detail::sized<PortState>();
         detail::check(enmm_get_port_state(handle_, port, &state));
+        return state;
+    }
+
+    // Names.
+
+    /** Names of all things of a kind by their numbers; see enmm_name for what the case does not name. */
+    std::vector<std::string> names(enmm_name_kind kind) const
+    {
+        std::size_t count = 0;
+        detail::check(enmm_name_count(handle_, kind, &count));
+        std::vector<std::string> found;
+        for (std::uint32_t k = 0; k < count; ++k)
+            found.push_back(name(kind, k));
+        return found;
+    }
+
+    std::string name(enmm_name_kind kind, std::uint32_t index) const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_name(handle_, kind, index, out, capacity, written);
+        });
+    }
+
+    MonitorState monitor_state(std::uint32_t monitor) const
+    {
+        auto state = detail::sized<MonitorState>();
+        detail::check(enmm_get_monitor_state(handle_, monitor, &state));
         return state;
     }
 

@@ -24,6 +24,7 @@
 mod error;
 mod inputs;
 mod interval;
+mod names;
 mod observe;
 mod parameter;
 mod ports;
@@ -33,6 +34,7 @@ mod threads;
 pub use crate::state::{Event, EventKind, PortKind, Quantity};
 pub use error::CosimulationError;
 pub use interval::{Interval, StepInfo};
+pub use names::Named;
 pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;

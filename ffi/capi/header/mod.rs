@@ -78,9 +78,10 @@ fn plain() -> Result<String, String> {
         line_length: 120,
         ..Config::default()
     };
-    let mut builder = Builder::new().with_config(config).include_item("enmm_interpolation");
+    let mut builder =
+        Builder::new().with_config(config).include_item("enmm_interpolation").include_item("enmm_name_kind");
     let sources = root().join("ffi/capi/src");
-    for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/observe", "abi/state"] {
+    for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/names", "abi/observe", "abi/state"] {
         builder = builder.with_src(sources.join(file).with_extension("rs"));
     }
     let own = std::env::temp_dir().join(format!("enmm-structures-{}.rs", std::process::id()));

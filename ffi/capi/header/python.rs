@@ -13,10 +13,10 @@ const BLOCKS: &str = "enmm_block_state";
 const UNSEEN: [&str; 2] = ["struct_size", "reserved"];
 
 /// Structures that models give as tuples with names.
-const TUPLES: [&str; 4] = ["enmm_step_info", "enmm_energies", "enmm_totals", "enmm_port_state"];
+const TUPLES: [&str; 5] = ["enmm_step_info", "enmm_energies", "enmm_totals", "enmm_port_state", "enmm_monitor_state"];
 
 /// Enumerations: name in C, class in Python, prefix of the members in C, documentation.
-const ENUMERATIONS: [[&str; 4]; 5] = [
+const ENUMERATIONS: [[&str; 4]; 6] = [
     ["enmm_contact_state", "ContactState", "ENMM_CONTACT_", "`state` of a contact."],
     [
         "enmm_event_kind",
@@ -27,6 +27,7 @@ const ENUMERATIONS: [[&str; 4]; 5] = [
     ["enmm_port_type", "PortKind", "ENMM_PORT_", "Kind of a port."],
     ["enmm_interpolation", "Interpolation", "ENMM_INTERPOLATION_", "How inputs go through a communication step."],
     ["enmm_log_level", "LogLevel", "ENMM_LOG_", "Weight of a message."],
+    ["enmm_name_kind", "NameKind", "ENMM_NAME_", "What has a number and a name."],
 ];
 /// Prefix of the flags of a block, and of their documentation.
 const FLAG: [&str; 2] = ["#define ENMM_BLOCK_", "Flag of a block: "];

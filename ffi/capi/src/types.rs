@@ -81,6 +81,26 @@ pub enum enmm_port_type {
     ENMM_PORT_JOINT = 2,
 }
 
+/// What has a number and a name.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_name_kind {
+    /// A joint trace, which events name by its number.
+    ENMM_NAME_JOINT = 0,
+    /// A joint law, which contacts name by its number.
+    ENMM_NAME_LAW = 1,
+    /// A rock, in the alphabetical order of their names.
+    ENMM_NAME_ROCK = 2,
+    /// A stage, in the order of the case.
+    ENMM_NAME_STAGE = 3,
+    /// A block.
+    ENMM_NAME_BLOCK = 4,
+    /// A place that the case names by `[[monitor]]`, in its order.
+    ENMM_NAME_MONITOR = 5,
+    /// A port, in the order of the case.
+    ENMM_NAME_PORT = 6,
+}
+
 /// State of a contact.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,7 +183,7 @@ pub struct enmm_contact {
     pub struct_size: usize,
     /// Open, slip or lock.
     pub state: enmm_contact_state,
-    /// Joint law: its place among the names of the laws of the case in alphabetical order, from 0.
+    /// Joint law: its place among the names of the laws of the case in alphabetical order, from 0; see enmm_name.
     pub law: u32,
     /// Block of the node.
     pub node_block: u32,
@@ -193,7 +213,8 @@ pub struct enmm_event {
     pub struct_size: usize,
     /// Kind of the event.
     pub kind: enmm_event_kind,
-    /// Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT; of two blocks that overlap the lower id.
+    /// Block id; for a slip or a broken bond the number of the joint trace, or ENMM_NO_JOINT; of two blocks that
+    /// overlap the lower id. enmm_name has the names.
     pub subject: u32,
     /// End of the internal step in which it happened (s), as enmm_get_time counts.
     pub time: f64,

@@ -32,6 +32,7 @@ from ._abi import (
     EventKind,
     Interpolation,
     LogLevel,
+    NameKind,
     PortKind,
 )
 from ._case import Case
@@ -60,7 +61,7 @@ from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
 from ._types import Event
-from ._values import BLOCK_FIELDS, Energies, PortState, StepInfo, Totals
+from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, StepInfo, Totals
 
 __version__ = "0.1.0"
 
@@ -97,6 +98,8 @@ __all__ = [
     "LibraryError",
     "LogLevel",
     "Model",
+    "MonitorState",
+    "NameKind",
     "NotFoundError",
     "NullArgumentError",
     "PanicError",

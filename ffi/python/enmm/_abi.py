@@ -86,6 +86,25 @@ class LogLevel(IntEnum):
     """Other events, and the end of the search for the initial equilibrium."""
 
 
+class NameKind(IntEnum):
+    """What has a number and a name."""
+
+    JOINT = 0
+    """A joint trace, which events name by its number."""
+    LAW = 1
+    """A joint law, which contacts name by its number."""
+    ROCK = 2
+    """A rock, in the alphabetical order of their names."""
+    STAGE = 3
+    """A stage, in the order of the case."""
+    BLOCK = 4
+    """A block."""
+    MONITOR = 5
+    """A place that the case names by `[[monitor]]`, in its order."""
+    PORT = 6
+    """A port, in the order of the case."""
+
+
 class StepInfo(ctypes.Structure):
     """`enmm_step_info`."""
 
@@ -98,6 +117,18 @@ class StepInfo(ctypes.Structure):
         ("first_event", c_size_t),
         ("halved", c_uint64),
         ("unsettled", c_uint64),
+    ]
+
+
+class MonitorState(ctypes.Structure):
+    """`enmm_monitor_state`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("displacement_x", c_double),
+        ("displacement_y", c_double),
+        ("velocity_x", c_double),
+        ("velocity_y", c_double),
     ]
 
 
@@ -237,6 +268,7 @@ class PortState(ctypes.Structure):
 
 STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_step_info": StepInfo,
+    "enmm_monitor_state": MonitorState,
     "enmm_block_state": BlockState,
     "enmm_energies": Energies,
     "enmm_totals": Totals,
@@ -258,6 +290,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_version": (c_char_p, []),
     "enmm_abi_version": (c_uint32, []),
     "enmm_last_error": (c_char_p, []),
+    "enmm_status_name": (c_char_p, [c_int32]),
     "enmm_create_from_file": (c_int32, [c_char_p, POINTER(c_void_p)]),
     "enmm_create_from_string": (c_int32, [c_char_p, c_char_p, POINTER(c_void_p)]),
     "enmm_check_case": (c_int32, [c_char_p, c_char_p]),
@@ -285,6 +318,9 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_set_strength_factor": (c_int32, [c_void_p, c_double]),
     "enmm_set_interpolation": (c_int32, [c_void_p, c_int32]),
     "enmm_get_interpolation": (c_int32, [c_void_p, POINTER(c_int32)]),
+    "enmm_name_count": (c_int32, [c_void_p, c_int32, POINTER(c_size_t)]),
+    "enmm_name": (c_int32, [c_void_p, c_int32, c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
+    "enmm_get_monitor_state": (c_int32, [c_void_p, c_uint32, POINTER(MonitorState)]),
     "enmm_block_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
     "enmm_get_block_states": (c_int32, [c_void_p, POINTER(BlockState), c_size_t, POINTER(c_size_t)]),
     "enmm_get_energies": (c_int32, [c_void_p, POINTER(Energies)]),

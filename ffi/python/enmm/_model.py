@@ -12,14 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._abi import EventKind, Interpolation
+from ._abi import EventKind, Interpolation, NameKind
 from ._closing import Closing
 from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
-from ._errors import BusyError, DeadHandleError, Status, invalid
+from ._errors import BusyError, DeadHandleError, NotFoundError, Status, invalid
 from ._library import Library, load_library
 from ._ports import Port, Ports
 from ._types import Event
-from ._values import Energies, StepInfo, Totals
+from ._values import Energies, MonitorState, StepInfo, Totals
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
 """Fields of `Model.blocks`, those of `enmm_block_state`."""
@@ -112,6 +112,7 @@ class Model(Closing):
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
         self._threads = 1
         self._ports = Ports(core)
+        self._names: dict[NameKind, tuple[str, ...]] = {}
 
     @classmethod
     def from_file(
@@ -347,9 +348,44 @@ class Model(Closing):
         columns = (rows[name].tolist() for name in ("kind", "subject", "time", "other", "depth"))
         none = {_abi.NO_JOINT: None, _abi.NO_BLOCK: None}
         return [
-            Event(EventKind(kind), none.get(of, of), time, none.get(other, other), depth)
+            Event(EventKind(kind), none.get(of, of), time, none.get(other, other), depth, self._name_of(kind, of))
             for kind, of, time, other, depth in zip(*columns, strict=True)
         ]
+
+    def _name_of(self, kind: int, subject: int) -> str | None:
+        """Name of the subject of an event."""
+        if subject == _abi.NO_JOINT:
+            return None
+        of_joints = kind in (EventKind.SLIPPED, EventKind.BROKEN)
+        return self.names(NameKind.JOINT if of_joints else NameKind.BLOCK)[subject]
+
+    def names(self, kind: NameKind) -> tuple[str, ...]:
+        """Names of all things of a kind, by their numbers. They never change.
+
+        What the case does not name has a stand-in: "joint[2]" is a joint of the case by its place there,
+        "bedding trace 4" (or "joint_set[1] trace 4") a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9"
+        any other joint trace, which a region of another law has parted or which surrounds an island, and "block 3" a
+        block.
+        """
+        kind = NameKind(kind)
+        if kind not in self._names:
+            count = self._core.get("enmm_name_count", c_size_t, kind)
+            self._names[kind] = tuple(self._core.text("enmm_name", kind, k) for k in range(count))
+        return self._names[kind]
+
+    def monitor(self, monitor: str | SupportsIndex) -> MonitorState:
+        """State of a monitor of the case, by its name or its place there. Raises NotFoundError for another name."""
+        of = self._named(NameKind.MONITOR, monitor) if isinstance(monitor, str) else index("monitor", monitor)
+        raw = self._core.read("enmm_get_monitor_state", _abi.MonitorState, of)
+        return MonitorState(*(getattr(raw, name) for name in MonitorState._fields))
+
+    def _named(self, kind: NameKind, name: str) -> int:
+        names = self.names(kind)
+        if name not in names:
+            word = kind.name.lower()
+            known = ", ".join(names) or "none"
+            raise NotFoundError(f"no {word} is named {name!r}; {word}s of the case: {known}", Status.NOT_FOUND)
+        return names.index(name)
 
     def energies(self) -> Energies:
         """Energies now and works since the start."""

@@ -21,3 +21,5 @@ class Event(NamedTuple):
     """Higher id of two blocks that overlap; None for events of other kinds."""
     depth: float = 0.0
     """Depth of an overlap when it was found (m); 0 for events of other kinds."""
+    name: str | None = None
+    """Name of the joint or block, as `Model.names` gives it; None for a contact that lies on no joint."""

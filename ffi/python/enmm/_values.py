@@ -144,6 +144,22 @@ class PortState(NamedTuple):
     """Largest accumulated slip along the joints (m)."""
 
 
+class MonitorState(NamedTuple):
+    """A monitor now.
+
+    Its velocity is that of half an internal step ago.
+    """
+
+    displacement_x: float
+    """Displacement, x (m)."""
+    displacement_y: float
+    """Displacement, y up (m)."""
+    velocity_x: float
+    """Velocity, x (m/s)."""
+    velocity_y: float
+    """Velocity, y up (m/s)."""
+
+
 BLOCK_FIELDS: dict[str, str] = {
     "id": "Block id: 0, 1, ...",
     "flags": "Sum of BlockFlag.FIXED, BlockFlag.DETACHED, BlockFlag.FAILED, BlockFlag.REMOVED.",

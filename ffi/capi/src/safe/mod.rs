@@ -6,5 +6,6 @@ pub mod failure;
 pub mod handles;
 pub mod inputs;
 pub mod model;
+pub mod names;
 pub mod observe;
 pub mod state;
