@@ -13,7 +13,8 @@
  * function allows it.
  *
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
- * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
+ * its messages have been delivered; any other gets ENMM_BUSY. enmm_interrupt alone can be called beside a call, to end
+ * it. A state may be used by many.
  *
  * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
  * another thread was using at the fork stays ENMM_BUSY there. No call waits for a thread that the new process does not
@@ -134,6 +135,10 @@ enum enmm_status
    * An internal error. The model that was in use can only be destroyed; all others are unharmed.
    */
   ENMM_PANIC = 12,
+  /**
+   * The host ended the call, by enmm_interrupt or by its progress callback; the model is as it was before the call.
+   */
+  ENMM_INTERRUPTED = 13,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -397,6 +402,45 @@ typedef struct enmm_step_info {
  * valid during the call. It must return: no longjmp, no exception.
  */
 typedef void (*enmm_log_callback)(void *user, enmm_log_level level, const char *message);
+
+/**
+ * How far a call has come.
+ */
+typedef struct enmm_progress {
+  /**
+   * Size of this structure (bytes), set by the library.
+   */
+  size_t struct_size;
+  /**
+   * Time reached (s): that of the model or, in the initial equilibrium, since its start.
+   */
+  double time;
+  /**
+   * End of the communication step (s), or the most time that the initial equilibrium may take; it ends when the
+   * model is at rest.
+   */
+  double end;
+  /**
+   * In the initial equilibrium the last net over applied force that is known; -1 for none.
+   */
+  double unbalanced;
+  /**
+   * 1 while a call seeks the initial equilibrium, else 0.
+   */
+  uint32_t is_equilibrium;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+} enmm_progress;
+
+/**
+ * Sees the progress of enmm_start and enmm_do_step. It is called on the thread of the call, between internal steps, at
+ * most every 50 ms. A result other than 0 ends the call with ENMM_INTERRUPTED. The call is working on the model
+ * meanwhile: other calls with it get ENMM_BUSY, but for enmm_interrupt and enmm_destroy. `progress` is valid during
+ * the call. It must return: no longjmp, no exception.
+ */
+typedef int32_t (*enmm_progress_callback)(const struct enmm_progress *progress, void *user);
 
 /**
  * A monitor now. Its velocity is that of half an internal step ago.
@@ -906,7 +950,7 @@ void enmm_destroy(struct enmm_model *model);
  * one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
  * equilibrium.
  *
- * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
+ * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model; ENMM_INTERRUPTED.
  */
 enmm_status enmm_start(struct enmm_model *model);
 
@@ -919,8 +963,8 @@ enmm_status enmm_start(struct enmm_model *model);
  * the last stage of the case continues. `info` may be NULL; otherwise its `struct_size` must be set.
  *
  * Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
- * with block, position and cause. The model is then the same as before, to the bit. Without enmm_start the first step
- * also computes the initial equilibrium, and discards it when the step fails.
+ * with block, position and cause; ENMM_INTERRUPTED. The model is then the same as before, to the bit. Without
+ * enmm_start the first step also computes the initial equilibrium, and discards it when the step fails.
  */
 enmm_status enmm_do_step(struct enmm_model *model, double t, double h, struct enmm_step_info *info);
 
@@ -974,6 +1018,29 @@ enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
  * Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
  */
 enmm_status enmm_set_log_callback(struct enmm_model *model, enmm_log_callback callback, void *user);
+
+/**
+ * Ends the call of enmm_start or enmm_do_step that is in progress with this model, in any thread: it returns
+ * ENMM_INTERRUPTED before its next internal step, and the model is as it was before the call, to the bit.
+ *
+ * It never waits and needs no turn at the model. Without a call in progress it does nothing: a call forgets what came
+ * before it, so that an interrupt just before a call begins has no effect, and a host that cannot know repeats it
+ * until the call has returned. A call that has taken its last internal step ends as if nothing had come. It locks a
+ * table for an instant and so must not be called in a signal handler: set a flag there, and return it from the
+ * progress callback.
+ *
+ * Errors: ENMM_NULL_ARGUMENT, ENMM_DEAD_HANDLE.
+ */
+enmm_status enmm_interrupt(struct enmm_model *model);
+
+/**
+ * Sets the callback that sees the progress of calls with this model and may end them; NULL (as at creation) for none.
+ *
+ * `user` is passed to the callback unchanged, and no longer used after this function has replaced the callback.
+ *
+ * Errors: ENMM_BUSY when a call is in progress, as in the callback itself.
+ */
+enmm_status enmm_set_progress_callback(struct enmm_model *model, enmm_progress_callback callback, void *user);
 
 /**
  * Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised

@@ -1,11 +1,13 @@
 //! Co-simulation: steps cover exactly their interval, on a grid that no host can shift, all or nothing; saved states,
 //! events, inputs and parameters.
 
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 use crate::common::saved::Whole;
 use crate::common::{example as text_of, examples};
-use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, Named, apply};
+use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, Named, Pace, Watch, apply};
 use enmm::geometry::Vector;
 use enmm::model::Mechanism;
 use enmm::model::bytes::{Keeper, decode, encode};
@@ -534,4 +536,48 @@ fn a_monitor_has_the_motion_of_its_place() {
     assert!((displacement - block.displacement).norm() < 1e-6 * block.displacement.norm());
     assert!((velocity - block.velocity).norm() < 1e-6 * block.velocity.norm());
     assert!(incline.monitor_state(1).is_err());
+}
+
+/// A watch that ends calls after so many looks, and what it has seen.
+fn ending_after(looks: usize) -> (Watch, Arc<Mutex<Vec<Pace>>>) {
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let own = Arc::clone(&seen);
+    let watch = move |pace: &Pace| {
+        let mut seen = own.lock().unwrap();
+        seen.push(*pace);
+        if seen.len() < looks { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    (Box::new(watch), seen)
+}
+
+#[test]
+fn an_interrupted_call_leaves_the_model_as_it_was_and_changes_nothing_later() {
+    let bytes = |model: &Cosimulation| model.serialize(&model.save()).unwrap();
+    let mut whole = model("coupled_slope");
+    let mut slope = model("coupled_slope");
+    let before = bytes(&slope);
+    for call in [Cosimulation::start, |model: &mut Cosimulation| model.do_step(0.0, 1.0).map(|_| ())] {
+        let (watch, seen) = ending_after(100);
+        slope.set_watch(Some(watch));
+        assert!(matches!(call(&mut slope), Err(CosimulationError::Interrupted)));
+        assert_eq!(bytes(&slope), before, "nothing is left of the equilibrium");
+        let last = seen.lock().unwrap()[99];
+        assert!(last.is_equilibrium && last.unbalanced.is_some() && last.time > 0.0 && last.time < last.end);
+    }
+    slope.set_watch(None);
+    slope.do_step(0.0, 0.0123).unwrap();
+    whole.do_step(0.0, 0.0123).unwrap();
+    let before = bytes(&slope);
+    let (watch, seen) = ending_after(20);
+    slope.set_watch(Some(watch));
+    assert!(matches!(slope.do_step(0.0123, 1e8), Err(CosimulationError::Interrupted)));
+    assert_eq!(bytes(&slope), before);
+    let last = seen.lock().unwrap()[19];
+    assert!(!last.is_equilibrium && last.unbalanced.is_none() && last.end == 1e8 + 0.0123);
+    assert!((last.time - 0.012 - 19.0 * slope.internal_step()).abs() < 2.0 * slope.internal_step(), "{last:?}");
+    let (watch, _) = ending_after(usize::MAX);
+    slope.set_watch(Some(watch));
+    slope.do_step(0.0123, 0.05).unwrap();
+    whole.do_step(0.0123, 0.05).unwrap();
+    assert_eq!(bytes(&slope), bytes(&whole), "a watch changes no bit");
 }

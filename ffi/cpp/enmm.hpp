@@ -45,6 +45,7 @@ using Energies = enmm_energies;
 using Event = enmm_event;
 using MonitorState = enmm_monitor_state;
 using PortState = enmm_port_state;
+using Progress = enmm_progress;
 using StepInfo = enmm_step_info;
 using Totals = enmm_totals;
 
@@ -134,6 +135,8 @@ inline void check_case(const std::string &toml, const std::string &base_dir = ".
 class Model {
 public:
     using Log = std::function<void(enmm_log_level, const std::string &)>;
+    /** Sees a call in progress; false ends it. */
+    using Watch = std::function<bool(const Progress &)>;
 
     /** Builds the model of a case file. */
     static Model from_file(const std::string &path)
@@ -177,6 +180,27 @@ public:
         auto info = detail::sized<StepInfo>();
         call([&](Frame &) { return enmm_do_step(handle_, t, h, &info); });
         return info;
+    }
+
+    /** Ends the start or do_step that is in progress in another thread, which throws ENMM_INTERRUPTED. */
+    void interrupt() const { detail::check(enmm_interrupt(handle_)); }
+
+    /**
+     * Sets what sees calls in progress, at most every 50 ms; an empty function for nothing. What it throws ends the call
+     * and comes out of it. It must not use the model, but for interrupt.
+     */
+    void set_progress(Watch watch)
+    {
+        const enmm_progress_callback callback = watch ? look : nullptr;
+        auto fresh = std::make_shared<const Watch>(std::move(watch));
+        call([&](Frame &frame) {
+            const enmm_status status = enmm_set_progress_callback(handle_, callback, frame.desk.get());
+            if (status == ENMM_OK) {
+                const std::lock_guard<std::mutex> guard(frame.desk->mutex);
+                frame.desk->watch.swap(fresh);
+            }
+            return status;
+        });
     }
 
     double time() const { return detail::number<double>(handle_, enmm_get_time); }
@@ -397,11 +421,18 @@ private:
     struct Desk : std::enable_shared_from_this<Desk> {
         std::mutex mutex;
         std::shared_ptr<const Log> log;
+        std::shared_ptr<const Watch> watch;
 
         std::shared_ptr<const Log> current()
         {
             const std::lock_guard<std::mutex> guard(mutex);
             return log;
+        }
+
+        std::shared_ptr<const Watch> watcher()
+        {
+            const std::lock_guard<std::mutex> guard(mutex);
+            return watch;
         }
     };
 
@@ -452,6 +483,21 @@ private:
         } catch (...) {
             if (ours)
                 frame->thrown = std::current_exception();
+        }
+    }
+
+    /** No exception may pass the library: it waits in the frame until the call is over. */
+    static int32_t look(const Progress *progress, void *user) noexcept
+    {
+        const auto desk = static_cast<Desk *>(user)->shared_from_this();
+        Frame *const frame = Frame::innermost();
+        try {
+            const auto watch = desk->watcher();
+            return watch && *watch && !(*watch)(*progress);
+        } catch (...) {
+            if (frame && frame->desk == desk)
+                frame->thrown = std::current_exception();
+            return 1;
         }
     }
 

@@ -41,6 +41,9 @@ pub enum CosimulationError {
     /// The step failed numerically.
     #[error("{0}; the model has been rolled back: take a smaller load step, or look at the block")]
     Step(#[from] StepError),
+    /// The watch of the model has ended the call.
+    #[error("the call was interrupted; the model is as it was before the call: call again to go on")]
+    Interrupted,
     /// The communication step that should go on is over.
     #[error("the communication step is over, or the model was moved to another time since: begin another")]
     Stale,

@@ -30,6 +30,7 @@ mod parameter;
 mod ports;
 mod saved;
 mod threads;
+mod watch;
 
 pub use crate::state::{Event, EventKind, PortKind, Quantity};
 pub use error::CosimulationError;
@@ -38,6 +39,7 @@ pub use names::Named;
 pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
+pub use watch::{Pace, Watch};
 
 use std::sync::Arc;
 
@@ -51,6 +53,7 @@ use crate::model::{BlockState, Simulation, SlopeFailure};
 use crate::state::{Inputs, State};
 use crate::step::{StepReport, THREADS_FROM};
 use threads::Pool;
+use watch::Watcher;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -98,6 +101,8 @@ pub struct Cosimulation {
     serial: u64,
     /// Threads of steps, when they are more than the caller's own and the model is worth them.
     pool: Option<Arc<Pool>>,
+    /// What looks at calls, and may end them.
+    watcher: Watcher,
 }
 
 impl Cosimulation {
@@ -110,7 +115,8 @@ impl Cosimulation {
         let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
         let backup = Saved::of(simulation.state(), &hash);
-        Ok(Self { simulation, hash, grid: None, progress: Progress::default(), backup, serial: 0, pool: None })
+        let (progress, watcher) = (Progress::default(), Watcher::default());
+        Ok(Self { simulation, hash, grid: None, progress, backup, serial: 0, pool: None, watcher })
     }
 
     /// The case.
@@ -192,7 +198,7 @@ impl Cosimulation {
     /// Seeks the initial equilibrium: runs the static stages before the first dynamic one. Does nothing later.
     ///
     /// # Errors
-    /// A numerical failure; the model is then as it was before.
+    /// A numerical failure, or an end by the watch; the model is then as it was before.
     pub fn start(&mut self) -> Result<(), CosimulationError> {
         if !self.progress.started {
             self.keep();
@@ -225,9 +231,13 @@ impl Cosimulation {
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
         for _ in 0..initial_stages(self.case()) {
+            let mut unbalanced = None;
             let step = |model: &mut Self| {
+                model.watch_equilibrium(unbalanced)?;
                 let wanted = model.simulation.rest_due();
-                model.step(None, wanted).map(|report| wanted.then_some(report))
+                let report = model.step(None, wanted)?;
+                unbalanced = if wanted { Some(report.unbalanced) } else { unbalanced };
+                Ok::<_, CosimulationError>(wanted.then_some(report))
             };
             let last = settle::until_over(self, Self::simulation, step)?;
             let report = last.unwrap_or_else(|| self.look(Simulation::report_on));

@@ -31,7 +31,8 @@ const INTRODUCTION: &str = "\
  * function allows it.
  *
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
- * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
+ * its messages have been delivered; any other gets ENMM_BUSY. enmm_interrupt alone can be called beside a call, to end
+ * it. A state may be used by many.
  *
  * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
  * another thread was using at the fork stays ENMM_BUSY there. No call waits for a thread that the new process does not

@@ -57,6 +57,8 @@ pub enum enmm_status {
     ENMM_WRONG_STATE = 11,
     /// An internal error. The model that was in use can only be destroyed; all others are unharmed.
     ENMM_PANIC = 12,
+    /// The host ended the call, by enmm_interrupt or by its progress callback; the model is as it was before the call.
+    ENMM_INTERRUPTED = 13,
 }
 
 /// How inputs go through a communication step.
@@ -153,6 +155,32 @@ pub enum enmm_log_level {
 pub type enmm_log_callback =
     Option<unsafe extern "C" fn(user: *mut c_void, level: enmm_log_level, message: *const c_char)>;
 
+/// How far a call has come.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_progress {
+    /// Size of this structure (bytes), set by the library.
+    pub struct_size: usize,
+    /// Time reached (s): that of the model or, in the initial equilibrium, since its start.
+    pub time: f64,
+    /// End of the communication step (s), or the most time that the initial equilibrium may take; it ends when the
+    /// model is at rest.
+    pub end: f64,
+    /// In the initial equilibrium the last net over applied force that is known; -1 for none.
+    pub unbalanced: f64,
+    /// 1 while a call seeks the initial equilibrium, else 0.
+    pub is_equilibrium: u32,
+    /// 0.
+    pub reserved: u32,
+}
+
+/// Sees the progress of enmm_start and enmm_do_step. It is called on the thread of the call, between internal steps, at
+/// most every 50 ms. A result other than 0 ends the call with ENMM_INTERRUPTED. The call is working on the model
+/// meanwhile: other calls with it get ENMM_BUSY, but for enmm_interrupt and enmm_destroy. `progress` is valid during
+/// the call. It must return: no longjmp, no exception.
+pub type enmm_progress_callback =
+    Option<unsafe extern "C" fn(progress: *const enmm_progress, user: *mut c_void) -> i32>;
+
 /// Outcome of a communication step.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -229,6 +257,9 @@ pub struct enmm_event {
 sized! {
     enmm_step_info 64 {
         struct_size time steps dt event_count first_event halved unsettled
+    }
+    enmm_progress 40 {
+        struct_size time end unbalanced is_equilibrium reserved
     }
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress

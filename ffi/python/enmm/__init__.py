@@ -39,6 +39,7 @@ from ._case import Case
 from ._errors import (
     BufferTooSmallError,
     BusyError,
+    CallInterruptedError,
     CaseError,
     CaseFileError,
     DeadHandleError,
@@ -61,7 +62,7 @@ from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
 from ._types import Event
-from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, StepInfo, Totals
+from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StepInfo, Totals
 
 __version__ = "0.1.0"
 
@@ -80,6 +81,7 @@ __all__ = [
     "BlockFlag",
     "BufferTooSmallError",
     "BusyError",
+    "CallInterruptedError",
     "Case",
     "CaseError",
     "CaseFileError",
@@ -107,6 +109,7 @@ __all__ = [
     "PortKind",
     "PortState",
     "Ports",
+    "Progress",
     "Result",
     "RunError",
     "State",

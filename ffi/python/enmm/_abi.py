@@ -120,6 +120,19 @@ class StepInfo(ctypes.Structure):
     ]
 
 
+class Progress(ctypes.Structure):
+    """`enmm_progress`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("time", c_double),
+        ("end", c_double),
+        ("unbalanced", c_double),
+        ("is_equilibrium", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
 class MonitorState(ctypes.Structure):
     """`enmm_monitor_state`."""
 
@@ -268,6 +281,7 @@ class PortState(ctypes.Structure):
 
 STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_step_info": StepInfo,
+    "enmm_progress": Progress,
     "enmm_monitor_state": MonitorState,
     "enmm_block_state": BlockState,
     "enmm_energies": Energies,
@@ -285,6 +299,8 @@ OLDER_NAMES: dict[str, dict[str, str]] = {
 
 LOG_CALLBACK = ctypes.CFUNCTYPE(None, c_void_p, c_int32, c_char_p)
 """`enmm_log_callback`."""
+PROGRESS_CALLBACK = ctypes.CFUNCTYPE(c_int32, POINTER(Progress))
+"""`enmm_progress_callback` without the pointer of its host, which C passes behind and nobody reads."""
 
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_version": (c_char_p, []),
@@ -303,6 +319,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_get_stop_time": (c_int32, [c_void_p, POINTER(c_double)]),
     "enmm_set_threads": (c_int32, [c_void_p, c_size_t]),
     "enmm_set_log_callback": (c_int32, [c_void_p, LOG_CALLBACK, c_void_p]),
+    "enmm_interrupt": (c_int32, [c_void_p]),
+    "enmm_set_progress_callback": (c_int32, [c_void_p, PROGRESS_CALLBACK, c_void_p]),
     "enmm_case_hash": (c_int32, [c_void_p, c_char_p, c_size_t, POINTER(c_size_t)]),
     "enmm_set_gravity": (c_int32, [c_void_p, c_double, c_double]),
     "enmm_set_block_force": (c_int32, [c_void_p, c_uint32, c_double, c_double, c_double]),

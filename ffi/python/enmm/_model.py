@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _abi
 from ._abi import EventKind, Interpolation, NameKind
 from ._closing import Closing
-from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
+from ._core import Core, LogFunction, ProgressFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
 from ._errors import BusyError, DeadHandleError, NotFoundError, Status, invalid
 from ._library import Library, load_library
 from ._ports import Port, Ports
@@ -158,15 +158,17 @@ class Model(Closing):
 
     # Time.
 
-    def start(self) -> None:
+    def start(self, *, progress: ProgressFunction | None = None) -> None:
         """Seeks the initial equilibrium now, under the inputs that have been set.
 
         This runs the static stages before the first dynamic one; otherwise the first `do_step` does. Does nothing when
-        it has been done. Time 0 is its end. Raises StepError, or CaseError when a stage does not fit the model.
+        it has been done. Time 0 is its end. Raises StepError, CaseError when a stage does not fit the model, or what
+        ends the call early; see `do_step`.
         """
-        self._core.call("enmm_start")
+        with self._core.watched(progress):
+            self._core.call("enmm_start")
 
-    def do_step(self, t: float, h: float) -> StepInfo:
+    def do_step(self, t: float, h: float, *, progress: ProgressFunction | None = None) -> StepInfo:
         """Advances the model from `t` to exactly `t + h` (s), or not at all.
 
         `t` must be the time of the model. How a time is split into communication steps does not change results, not
@@ -175,9 +177,22 @@ class Model(Closing):
 
         Raises TimeError; InvalidArgumentError when `h` is not greater than 0 and finite; StepError with block, place
         and cause. The model then still is at `t`, with its inputs.
+
+        `progress` gets a Progress at most every 50 ms, on the thread of the call; other calls to the model raise
+        BusyError there. An exception that it raises, and the KeyboardInterrupt of Ctrl+C in the main thread, end the
+        call within 50 ms, or an internal step if that takes longer, and so does `interrupt` with CallInterruptedError;
+        the model then is as it was before the call.
         """
-        raw = self._core.read("enmm_do_step", _abi.StepInfo, number(t), number(h))
+        with self._core.watched(progress):
+            raw = self._core.read("enmm_do_step", _abi.StepInfo, number(t), number(h))
         return StepInfo(*(getattr(raw, name) for name in StepInfo._fields))
+
+    def interrupt(self) -> None:
+        """Ends the `start` or `do_step` that is in progress in another thread, which raises CallInterruptedError.
+
+        Without such a call it does nothing: a call forgets what came before it.
+        """
+        self._core.call("enmm_interrupt")
 
     @property
     def time(self) -> float:

@@ -58,6 +58,7 @@ impl From<CosimulationError> for Failure {
         let status = match error {
             CosimulationError::Stage(_) => enmm_status::ENMM_INVALID_CASE,
             CosimulationError::NoPort { .. } => enmm_status::ENMM_NOT_FOUND,
+            CosimulationError::Interrupted => enmm_status::ENMM_INTERRUPTED,
             CosimulationError::Value { .. } => enmm_status::ENMM_INVALID_ARGUMENT,
             CosimulationError::Time { .. } | CosimulationError::Stale => enmm_status::ENMM_WRONG_TIME,
             CosimulationError::Step(_) => enmm_status::ENMM_NUMERICAL_FAILURE,
@@ -85,6 +86,7 @@ macro_rules! statuses {
 statuses! {
     ENMM_OK ENMM_NULL_ARGUMENT ENMM_DEAD_HANDLE ENMM_BUSY ENMM_INVALID_ARGUMENT ENMM_INVALID_CASE ENMM_FILE_ERROR
     ENMM_WRONG_TIME ENMM_NUMERICAL_FAILURE ENMM_BUFFER_TOO_SMALL ENMM_NOT_FOUND ENMM_WRONG_STATE ENMM_PANIC
+    ENMM_INTERRUPTED
 }
 
 /// Room for a message with its closing zero (bytes).

@@ -8,6 +8,7 @@ use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepIn
 use engine::model::SlopeFailure;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
+use super::control::{Interrupt, Progress};
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
 use crate::types::{enmm_interpolation, enmm_log_level, enmm_status, enmm_step_info};
@@ -23,6 +24,8 @@ pub struct Shared {
     model: Mutex<Model>,
     /// Thread that is in a call, messages of the call included; 0 for none.
     owner: AtomicUsize,
+    /// Wish that the call ends, beside the model, so that it needs no turn.
+    pub interrupt: Interrupt,
 }
 
 /// The right of one thread to a model. The outermost call of the thread gives it back.
@@ -42,8 +45,7 @@ fn this_thread() -> usize {
     HERE.with(|here| std::ptr::from_ref(here).addr())
 }
 
-fn busy() -> Failure {
-    let message = "another thread is using this model; let one thread at a time use it";
+fn busy(message: &str) -> Failure {
     Failure::new(enmm_status::ENMM_BUSY, message)
 }
 
@@ -57,7 +59,7 @@ impl Shared {
         match self.owner.compare_exchange(0, here, Ordering::Acquire, Ordering::Relaxed) {
             Ok(_) => Ok(Turn(Some(&self.owner))),
             Err(owner) if owner == here => Ok(Turn(None)),
-            Err(_) => Err(busy()),
+            Err(_) => Err(busy("another thread is using this model; let one thread at a time use it")),
         }
     }
 
@@ -67,7 +69,9 @@ impl Shared {
     /// A call is working on it, or a panic has left it broken.
     pub fn lock(&self) -> Result<MutexGuard<'_, Model>, Failure> {
         self.model.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => busy(),
+            TryLockError::WouldBlock => {
+                busy("a call of this thread is working on this model; use it when that call has returned")
+            }
             TryLockError::Poisoned(_) => {
                 let message = "an internal error has broken this model; destroy it, and create it anew";
                 Failure::new(enmm_status::ENMM_PANIC, message)
@@ -82,6 +86,7 @@ pub struct Model {
     pub inner: Cosimulation,
     log: Log,
     warnings: Vec<String>,
+    interrupt: Interrupt,
 }
 
 /// Messages of one call, and where they go.
@@ -140,10 +145,12 @@ pub fn check_case(toml: &str, base_dir: &str) -> Result<(), Failure> {
 }
 
 fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
-    let inner = loaded.cosimulation()?;
+    let mut inner = loaded.cosimulation()?;
+    let interrupt = Interrupt::default();
+    inner.set_watch(Some(interrupt.watch(None)));
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
-    let model = Model { inner, log: Log::default(), warnings };
-    MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0) })
+    let model = Model { inner, log: Log::default(), warnings, interrupt: interrupt.clone() };
+    MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0), interrupt })
 }
 
 impl Model {
@@ -157,6 +164,11 @@ impl Model {
         }
     }
 
+    /// Sets or takes away what sees the progress of calls.
+    pub fn set_progress(&mut self, progress: Option<Progress>) {
+        self.inner.set_watch(Some(self.interrupt.watch(progress)));
+    }
+
     /// Messages that have come together.
     pub fn take_mail(&mut self) -> Mail {
         Mail(std::mem::take(&mut self.log.pending_messages))
@@ -165,12 +177,13 @@ impl Model {
     /// Seeks the initial equilibrium.
     ///
     /// # Errors
-    /// A numerical failure.
+    /// A numerical failure, or an interrupt.
     pub fn start(&mut self) -> Outcome {
+        self.interrupt.clear();
         let was_started = self.inner.is_started();
         let result = self.inner.start().map_err(Failure::from);
         if let Err(failure) = &result {
-            self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone());
+            self.log_failure(failure);
         }
         self.log_start(was_started);
         result
@@ -179,14 +192,15 @@ impl Model {
     /// Advances from `t` over `h`.
     ///
     /// # Errors
-    /// Times that do not fit, or a numerical failure.
+    /// Times that do not fit, a numerical failure, or an interrupt.
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<enmm_step_info, Failure> {
+        self.interrupt.clear();
         let was_started = self.inner.is_started();
         let result = self.inner.do_step(t, h).map_err(Failure::from);
         self.log_start(was_started);
         match &result {
             Ok(info) => self.log_step(info),
-            Err(failure) => self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone()),
+            Err(failure) => self.log_failure(failure),
         }
         let info = result?;
         Ok(enmm_step_info {
@@ -199,6 +213,15 @@ impl Model {
             halved: info.halved,
             unsettled: info.unsettled,
         })
+    }
+
+    /// Logs a call that failed; one that the host ended is no error.
+    fn log_failure(&mut self, failure: &Failure) {
+        let level = match failure.status {
+            enmm_status::ENMM_INTERRUPTED => enmm_log_level::ENMM_LOG_INFO,
+            _ => enmm_log_level::ENMM_LOG_ERROR,
+        };
+        self.log.write(level, || failure.message.clone());
     }
 
     /// Logs the initial equilibrium when this call has computed it.
