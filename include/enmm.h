@@ -358,6 +358,41 @@ typedef struct enmm_model enmm_model;
 typedef struct enmm_state enmm_state;
 
 /**
+ * How the search for the initial equilibrium ended.
+ */
+typedef struct enmm_start_info {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * 1 when it has been sought, by a start or by the first step; else 0, as all that follows.
+   */
+  uint32_t started;
+  /**
+   * 1 when the model came to rest. When it did not, the slope moves, or its static stage needs a longer duration:
+   * the model slides from time 0 on.
+   */
+  uint32_t settled;
+  /**
+   * 1 when the slope had failed at the end of the last search of this model.
+   */
+  uint32_t failed;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+  /**
+   * Internal steps that the search took.
+   */
+  uint64_t steps;
+  /**
+   * Net over applied force at its end when the model did not come to rest; 0 when it did.
+   */
+  double unbalanced;
+} enmm_start_info;
+
+/**
  * Outcome of a communication step.
  */
 typedef struct enmm_step_info {
@@ -948,11 +983,20 @@ void enmm_destroy(struct enmm_model *model);
 /**
  * Computes the initial equilibrium with the inputs that have been set: runs the static stages before the first dynamic
  * one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
- * equilibrium.
+ * equilibrium. enmm_get_start_info says whether the model came to rest.
  *
  * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model; ENMM_INTERRUPTED.
  */
 enmm_status enmm_start(struct enmm_model *model);
+
+/**
+ * Writes how the search for the initial equilibrium ended. `info->struct_size` must be set.
+ *
+ * A model that did not come to rest is no error: enmm_start and enmm_do_step return ENMM_OK, and the log warns.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_start_info(struct enmm_model *model, struct enmm_start_info *info);
 
 /**
  * Advances the model from `t` to exactly `t + h` (s), or not at all.

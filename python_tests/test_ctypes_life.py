@@ -468,3 +468,28 @@ def test_ctrl_c_ends_a_step_and_leaves_the_model_as_it_was(package, cases):
     late, same = result.stdout.split()
     print(f"KeyboardInterrupt {1e3 * float(late):.1f} ms after the signal")
     assert float(late) < 5.0 and same == "True"
+
+
+# A start that is not at rest.
+
+
+@pytest.mark.parametrize("call", ["start", "do_step"])
+def test_a_lost_equilibrium_is_a_warning_once(package, cases, call):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        model.ports["toe"].set_force(0.45e6, 0.28e6)
+        seek = model.start if call == "start" else lambda: model.do_step(0.0, 0.01)
+        with pytest.warns(package.EquilibriumWarning, match="not at rest at time 0") as caught:
+            seek()
+        assert [Path(warning.filename).name for warning in caught] == [Path(__file__).name]
+        info = model.start_info()
+        assert info.started and not info.settled and info.steps > 100 and info.unbalanced > 1e-3
+        model.do_step(model.time, 0.01)
+
+
+def test_an_equilibrium_that_is_reached_is_no_warning(package, cases, recwarn):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        info = model.start()
+        assert info.started and info.settled and not info.failed and info.unbalanced == 0.0
+        model.restore(model.save())
+        model.do_step(0.0, 0.01)
+    assert not recwarn.list

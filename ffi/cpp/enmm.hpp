@@ -46,6 +46,7 @@ using Event = enmm_event;
 using MonitorState = enmm_monitor_state;
 using PortState = enmm_port_state;
 using Progress = enmm_progress;
+using StartInfo = enmm_start_info;
 using StepInfo = enmm_step_info;
 using Totals = enmm_totals;
 
@@ -173,7 +174,20 @@ public:
 
     // Time.
 
-    void start() { call([&](Frame &) { return enmm_start(handle_); }); }
+    /** Seeks the initial equilibrium, which need not be reached: see `settled` of what it returns. */
+    StartInfo start()
+    {
+        auto info = detail::sized<StartInfo>();
+        call([&, handle = handle_](Frame &) {
+            const enmm_status status = enmm_start(handle);
+            if (status == ENMM_OK)
+                (void)enmm_get_start_info(handle, &info); // which is empty when the log has ended the model
+            return status;
+        });
+        return info;
+    }
+
+    StartInfo start_info() const { return filled<StartInfo>(enmm_get_start_info); }
 
     StepInfo do_step(double t, double h)
     {

@@ -177,6 +177,11 @@ impl Cosimulation {
         self.progress.started
     }
 
+    /// Internal steps that the initial equilibrium took.
+    pub fn initial_steps(&self) -> u64 {
+        self.progress.origin
+    }
+
     /// Net over applied force of the initial equilibrium, when its stage was over before the model came to rest: the
     /// slope moves, or the stage needs a longer duration.
     pub fn initial_residual(&self) -> Option<f64> {

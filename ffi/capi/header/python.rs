@@ -13,8 +13,15 @@ const BLOCKS: &str = "enmm_block_state";
 const UNSEEN: [&str; 2] = ["struct_size", "reserved"];
 
 /// Structures that models give as tuples with names.
-const TUPLES: [&str; 6] =
-    ["enmm_progress", "enmm_step_info", "enmm_energies", "enmm_totals", "enmm_port_state", "enmm_monitor_state"];
+const TUPLES: [&str; 7] = [
+    "enmm_start_info",
+    "enmm_progress",
+    "enmm_step_info",
+    "enmm_energies",
+    "enmm_totals",
+    "enmm_port_state",
+    "enmm_monitor_state",
+];
 
 /// Enumerations: name in C, class in Python, prefix of the members in C, documentation.
 const ENUMERATIONS: [[&str; 4]; 6] = [

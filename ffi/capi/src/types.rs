@@ -155,6 +155,27 @@ pub enum enmm_log_level {
 pub type enmm_log_callback =
     Option<unsafe extern "C" fn(user: *mut c_void, level: enmm_log_level, message: *const c_char)>;
 
+/// How the search for the initial equilibrium ended.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_start_info {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// 1 when it has been sought, by a start or by the first step; else 0, as all that follows.
+    pub started: u32,
+    /// 1 when the model came to rest. When it did not, the slope moves, or its static stage needs a longer duration:
+    /// the model slides from time 0 on.
+    pub settled: u32,
+    /// 1 when the slope had failed at the end of the last search of this model.
+    pub failed: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Internal steps that the search took.
+    pub steps: u64,
+    /// Net over applied force at its end when the model did not come to rest; 0 when it did.
+    pub unbalanced: f64,
+}
+
 /// How far a call has come.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -257,6 +278,9 @@ pub struct enmm_event {
 sized! {
     enmm_step_info 64 {
         struct_size time steps dt event_count first_event halved unsettled
+    }
+    enmm_start_info 40 {
+        struct_size started settled failed reserved steps unbalanced
     }
     enmm_progress 40 {
         struct_size time end unbalanced is_equilibrium reserved

@@ -61,8 +61,8 @@ from ._ports import Port, Ports
 from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
-from ._types import Event
-from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StepInfo, Totals
+from ._types import EquilibriumWarning, Event
+from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
 
 __version__ = "0.1.0"
 
@@ -89,6 +89,7 @@ __all__ = [
     "DeadHandleError",
     "Energies",
     "EnmmError",
+    "EquilibriumWarning",
     "Event",
     "EventKind",
     "Fos",
@@ -112,6 +113,7 @@ __all__ = [
     "Progress",
     "Result",
     "RunError",
+    "StartInfo",
     "State",
     "StateError",
     "Status",

@@ -105,6 +105,20 @@ class NameKind(IntEnum):
     """A port, in the order of the case."""
 
 
+class StartInfo(ctypes.Structure):
+    """`enmm_start_info`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("started", c_uint32),
+        ("settled", c_uint32),
+        ("failed", c_uint32),
+        ("reserved", c_uint32),
+        ("steps", c_uint64),
+        ("unbalanced", c_double),
+    ]
+
+
 class StepInfo(ctypes.Structure):
     """`enmm_step_info`."""
 
@@ -280,6 +294,7 @@ class PortState(ctypes.Structure):
 
 
 STRUCTURES: dict[str, type[ctypes.Structure]] = {
+    "enmm_start_info": StartInfo,
     "enmm_step_info": StepInfo,
     "enmm_progress": Progress,
     "enmm_monitor_state": MonitorState,
@@ -312,6 +327,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_check_case": (c_int32, [c_char_p, c_char_p]),
     "enmm_destroy": (None, [c_void_p]),
     "enmm_start": (c_int32, [c_void_p]),
+    "enmm_get_start_info": (c_int32, [c_void_p, POINTER(StartInfo)]),
     "enmm_do_step": (c_int32, [c_void_p, c_double, c_double, POINTER(StepInfo)]),
     "enmm_get_time": (c_int32, [c_void_p, POINTER(c_double)]),
     "enmm_get_internal_step": (c_int32, [c_void_p, POINTER(c_double)]),

@@ -2,8 +2,10 @@
 
 import ctypes
 import os
+import warnings
 import weakref
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 from typing import NamedTuple, Self, SupportsIndex
@@ -18,8 +20,8 @@ from ._core import Core, LogFunction, ProgressFunction, Rows, dtype_of, ids_of, 
 from ._errors import BusyError, DeadHandleError, NotFoundError, Status, invalid
 from ._library import Library, load_library
 from ._ports import Port, Ports
-from ._types import Event
-from ._values import Energies, MonitorState, StepInfo, Totals
+from ._types import EquilibriumWarning, Event
+from ._values import Energies, MonitorState, StartInfo, StepInfo, Totals
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
 """Fields of `Model.blocks`, those of `enmm_block_state`."""
@@ -112,6 +114,7 @@ class Model(Closing):
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
         self._threads = 1
         self._ports = Ports(core)
+        self._is_started = False
         self._names: dict[NameKind, tuple[str, ...]] = {}
 
     @classmethod
@@ -158,15 +161,41 @@ class Model(Closing):
 
     # Time.
 
-    def start(self, *, progress: ProgressFunction | None = None) -> None:
+    def start(self, *, progress: ProgressFunction | None = None) -> StartInfo:
         """Seeks the initial equilibrium now, under the inputs that have been set.
 
         This runs the static stages before the first dynamic one; otherwise the first `do_step` does. Does nothing when
         it has been done. Time 0 is its end. Raises StepError, CaseError when a stage does not fit the model, or what
         ends the call early; see `do_step`.
+
+        Warns by EquilibriumWarning when the model did not come to rest or the slope failed on the way, which is no
+        error; so does the first `do_step` where it seeks the equilibrium.
         """
-        with self._core.watched(progress):
+        with self._core.watched(progress), self._seeking():
             self._core.call("enmm_start")
+        return self.start_info()
+
+    def start_info(self) -> StartInfo:
+        """How the search for the initial equilibrium ended."""
+        raw = self._core.read("enmm_get_start_info", _abi.StartInfo)
+        return StartInfo(*(getattr(raw, name) for name in StartInfo._fields))
+
+    @contextmanager
+    def _seeking(self) -> Iterator[None]:
+        """Warns of an equilibrium that a call within it seeks and does not reach."""
+        if self._is_started or self.start_info().started:
+            self._is_started = True
+            yield
+            return
+        yield
+        info = self.start_info()
+        self._is_started = bool(info.started)
+        if not info.settled:
+            text = f"the model is not at rest at time 0 (unbalanced ratio {info.unbalanced:.2e})"
+            remedy = "the slope moves, or its static stage needs a longer duration"
+            warnings.warn(f"{text}: {remedy}", EquilibriumWarning, stacklevel=4)
+        elif info.failed:
+            warnings.warn("the slope has failed in the initial equilibrium", EquilibriumWarning, stacklevel=4)
 
     def do_step(self, t: float, h: float, *, progress: ProgressFunction | None = None) -> StepInfo:
         """Advances the model from `t` to exactly `t + h` (s), or not at all.
@@ -183,7 +212,7 @@ class Model(Closing):
         call within 50 ms, or an internal step if that takes longer, and so does `interrupt` with CallInterruptedError;
         the model then is as it was before the call.
         """
-        with self._core.watched(progress):
+        with self._core.watched(progress), self._seeking():
             raw = self._core.read("enmm_do_step", _abi.StepInfo, number(t), number(h))
         return StepInfo(*(getattr(raw, name) for name in StepInfo._fields))
 
@@ -445,6 +474,7 @@ class Model(Closing):
         The state can be used again. Raises StateError for a state of another case; the model then stays as it is.
         """
         self._core.call("enmm_state_restore", state.handle)
+        self._is_started = False
 
     def serialize(self, state: State | None = None) -> bytes:
         """A state, without one that of now, as bytes for a file or another process.

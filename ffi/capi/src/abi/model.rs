@@ -10,7 +10,8 @@ use crate::safe::control::Progress;
 use crate::safe::enter::{guard, with_model};
 use crate::safe::model::{self, MODELS, Sink};
 use crate::types::{
-    enmm_log_callback, enmm_log_level, enmm_model, enmm_progress, enmm_progress_callback, enmm_status, enmm_step_info,
+    enmm_log_callback, enmm_log_level, enmm_model, enmm_progress, enmm_progress_callback, enmm_start_info, enmm_status,
+    enmm_step_info,
 };
 
 /// Builds the model of a case file. Nothing moves yet.
@@ -98,12 +99,26 @@ pub extern "C" fn enmm_destroy(model: *mut enmm_model) {
 
 /// Computes the initial equilibrium with the inputs that have been set: runs the static stages before the first dynamic
 /// one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
-/// equilibrium.
+/// equilibrium. enmm_get_start_info says whether the model came to rest.
 ///
 /// Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model; ENMM_INTERRUPTED.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
     with_model(model.addr(), |model| model.start())
+}
+
+/// Writes how the search for the initial equilibrium ended. `info->struct_size` must be set.
+///
+/// A model that did not come to rest is no error: enmm_start and enmm_do_step return ENMM_OK, and the log warns.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_start_info(model: *mut enmm_model, info: *mut enmm_start_info) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.start_info(), info) })
 }
 
 /// Advances the model from `t` to exactly `t + h` (s), or not at all.

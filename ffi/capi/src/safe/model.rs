@@ -4,14 +4,14 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
+use engine::cosimulation::{Cosimulation, CosimulationError, Event, EventKind, Interpolation, StepInfo};
 use engine::model::SlopeFailure;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
 use super::control::{Interrupt, Progress};
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
-use crate::types::{enmm_interpolation, enmm_log_level, enmm_status, enmm_step_info};
+use crate::types::{enmm_interpolation, enmm_log_level, enmm_start_info, enmm_status, enmm_step_info};
 
 /// Models that are alive.
 pub static MODELS: Table<Shared> = Table::new(0x10, "model");
@@ -87,6 +87,8 @@ pub struct Model {
     log: Log,
     warnings: Vec<String>,
     interrupt: Interrupt,
+    /// Whether the slope had failed at the end of the last search for the initial equilibrium.
+    has_failed_at_start: bool,
 }
 
 /// Messages of one call, and where they go.
@@ -149,7 +151,8 @@ fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
     let interrupt = Interrupt::default();
     inner.set_watch(Some(interrupt.watch(None)));
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
-    let model = Model { inner, log: Log::default(), warnings, interrupt: interrupt.clone() };
+    let model =
+        Model { inner, log: Log::default(), warnings, interrupt: interrupt.clone(), has_failed_at_start: false };
     MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0), interrupt })
 }
 
@@ -182,11 +185,26 @@ impl Model {
         self.interrupt.clear();
         let was_started = self.inner.is_started();
         let result = self.inner.start().map_err(Failure::from);
+        self.note_start(was_started);
         if let Err(failure) = &result {
             self.log_failure(failure);
         }
         self.log_start(was_started);
         result
+    }
+
+    /// How the search for the initial equilibrium ended.
+    pub fn start_info(&self) -> enmm_start_info {
+        let (is_started, unbalanced) = (self.inner.is_started(), self.inner.initial_residual());
+        enmm_start_info {
+            struct_size: size_of::<enmm_start_info>(),
+            started: u32::from(is_started),
+            settled: u32::from(is_started && unbalanced.is_none()),
+            failed: u32::from(is_started && self.has_failed_at_start),
+            reserved: 0,
+            steps: self.inner.initial_steps(),
+            unbalanced: unbalanced.unwrap_or_default(),
+        }
     }
 
     /// Advances from `t` over `h`.
@@ -196,7 +214,7 @@ impl Model {
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<enmm_step_info, Failure> {
         self.interrupt.clear();
         let was_started = self.inner.is_started();
-        let result = self.inner.do_step(t, h).map_err(Failure::from);
+        let result = self.cover(t, h).map_err(Failure::from);
         self.log_start(was_started);
         match &result {
             Ok(info) => self.log_step(info),
@@ -213,6 +231,22 @@ impl Model {
             halved: info.halved,
             unsettled: info.unsettled,
         })
+    }
+
+    /// Covers the interval, and looks at the initial equilibrium when the step begins with it.
+    fn cover(&mut self, t: f64, h: f64) -> Result<StepInfo, CosimulationError> {
+        let was_started = self.inner.is_started();
+        let mut interval = self.inner.begin(t, h)?;
+        self.note_start(was_started);
+        while self.inner.advance(&mut interval)? {}
+        Ok(interval.info().clone())
+    }
+
+    /// Notes whether the slope has failed in the initial equilibrium that has just been sought.
+    fn note_start(&mut self, was_started: bool) {
+        if !was_started && self.inner.is_started() {
+            self.has_failed_at_start = self.inner.failure().is_some();
+        }
     }
 
     /// Logs a call that failed; one that the host ended is no error.

@@ -195,13 +195,21 @@ static void messages(enmm_model *model)
 static void steps(enmm_model *model)
 {
     enmm_step_info info = {0};
+    enmm_start_info found = {0};
     double time = -1, step = 0, communication = 0, stop = 0;
     CHECK(enmm_do_step(model, 0, 0.01, &info) == ENMM_INVALID_ARGUMENT);
     OK(enmm_get_time(model, &time));
     CHECK(time == 0);
     info.struct_size = sizeof info;
+    CHECK(enmm_get_start_info(model, &found) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_get_start_info(model, NULL) == ENMM_NULL_ARGUMENT);
+    found.struct_size = sizeof found;
+    OK(enmm_get_start_info(model, &found));
+    CHECK(found.started == 0 && found.settled == 0 && found.steps == 0);
     OK(enmm_start(model));
     OK(enmm_start(model));
+    OK(enmm_get_start_info(model, &found));
+    CHECK(found.started == 1 && found.settled == 1 && found.failed == 0 && found.steps > 10 && found.unbalanced == 0);
     OK(enmm_do_step(model, 0, 0.01, &info));
     CHECK(info.time == 0.01 && info.steps >= 10 && info.struct_size == sizeof info);
     OK(enmm_get_internal_step(model, &step));
