@@ -13,7 +13,8 @@
  * function allows it.
  *
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
- * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
+ * its messages have been delivered; any other gets ENMM_BUSY. enmm_interrupt alone can be called beside a call, to end
+ * it. A state may be used by many.
  *
  * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
  * another thread was using at the fork stays ENMM_BUSY there. No call waits for a thread that the new process does not
@@ -139,6 +140,10 @@ enum enmm_status
    * An internal error. The model that was in use can only be destroyed; all others are unharmed.
    */
   ENMM_PANIC = 12,
+  /**
+   * The host ended the call, by enmm_interrupt or by its progress callback; the model is as it was before the call.
+   */
+  ENMM_INTERRUPTED = 13,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -352,6 +357,51 @@ typedef int32_t enmm_input;
 #endif // __cplusplus
 
 /**
+ * What has a number and a name.
+ */
+enum enmm_name_kind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A joint trace, which events name by its number.
+   */
+  ENMM_NAME_JOINT = 0,
+  /**
+   * A joint law, which contacts name by its number.
+   */
+  ENMM_NAME_LAW = 1,
+  /**
+   * A rock, in the alphabetical order of their names.
+   */
+  ENMM_NAME_ROCK = 2,
+  /**
+   * A stage, in the order of the case.
+   */
+  ENMM_NAME_STAGE = 3,
+  /**
+   * A block.
+   */
+  ENMM_NAME_BLOCK = 4,
+  /**
+   * A place that the case names by `[[monitor]]`, in its order.
+   */
+  ENMM_NAME_MONITOR = 5,
+  /**
+   * A port, in the order of the case.
+   */
+  ENMM_NAME_PORT = 6,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_name_kind enmm_name_kind;
+#else
+typedef int32_t enmm_name_kind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * A model. The handle is a number that is never dereferenced: a NULL or dead handle is an error and never a crash.
  */
 typedef struct enmm_model enmm_model;
@@ -360,6 +410,41 @@ typedef struct enmm_model enmm_model;
  * A saved state of a model; it may outlive the model. The handle is as safe as that of a model.
  */
 typedef struct enmm_state enmm_state;
+
+/**
+ * How the search for the initial equilibrium ended.
+ */
+typedef struct enmm_start_info {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * 1 when it has been sought, by a start or by the first step; else 0, as all that follows.
+   */
+  uint32_t started;
+  /**
+   * 1 when the model came to rest. When it did not, the slope moves, or its static stage needs a longer duration:
+   * the model slides from time 0 on.
+   */
+  uint32_t settled;
+  /**
+   * 1 when the slope had failed at the end of the last search of this model.
+   */
+  uint32_t failed;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+  /**
+   * Internal steps that the search took.
+   */
+  uint64_t steps;
+  /**
+   * Net over applied force at its end when the model did not come to rest; 0 when it did.
+   */
+  double unbalanced;
+} enmm_start_info;
 
 /**
  * Outcome of a communication step.
@@ -406,6 +491,71 @@ typedef struct enmm_step_info {
  * valid during the call. It must return: no longjmp, no exception.
  */
 typedef void (*enmm_log_callback)(void *user, enmm_log_level level, const char *message);
+
+/**
+ * How far a call has come.
+ */
+typedef struct enmm_progress {
+  /**
+   * Size of this structure (bytes), set by the library.
+   */
+  size_t struct_size;
+  /**
+   * Time reached (s): that of the model or, in the initial equilibrium, since its start.
+   */
+  double time;
+  /**
+   * End of the communication step (s), or the most time that the initial equilibrium may take; it ends when the
+   * model is at rest.
+   */
+  double end;
+  /**
+   * In the initial equilibrium the last net over applied force that is known; -1 for none.
+   */
+  double unbalanced;
+  /**
+   * 1 while a call seeks the initial equilibrium, else 0.
+   */
+  uint32_t is_equilibrium;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+} enmm_progress;
+
+/**
+ * Sees the progress of enmm_start and enmm_do_step. It is called on the thread of the call, between internal steps, at
+ * most every 50 ms. A result other than 0 ends the call with ENMM_INTERRUPTED. The call is working on the model
+ * meanwhile: other calls with it get ENMM_BUSY, but for enmm_interrupt and enmm_destroy. `progress` is valid during
+ * the call. It must return: no longjmp, no exception.
+ */
+typedef int32_t (*enmm_progress_callback)(const struct enmm_progress *progress, void *user);
+
+/**
+ * A monitor now. Its velocity is that of half an internal step ago.
+ */
+typedef struct enmm_monitor_state {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Displacement, x (m).
+   */
+  double displacement_x;
+  /**
+   * Displacement, y up (m).
+   */
+  double displacement_y;
+  /**
+   * Velocity, x (m/s).
+   */
+  double velocity_x;
+  /**
+   * Velocity, y up (m/s).
+   */
+  double velocity_y;
+} enmm_monitor_state;
 
 /**
  * A block now. Velocities are those of half an internal step ago, as the method has them.
@@ -671,7 +821,7 @@ typedef struct enmm_contact {
    */
   enmm_contact_state state;
   /**
-   * Joint law: its place among the names of the laws of the case in alphabetical order, from 0.
+   * Joint law: its place among the names of the laws of the case in alphabetical order, from 0; see enmm_name.
    */
   uint32_t law;
   /**
@@ -725,7 +875,8 @@ typedef struct enmm_event {
    */
   enmm_event_kind kind;
   /**
-   * Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT; of two blocks that overlap the lower id.
+   * Block id; for a slip or a broken bond the number of the joint trace, or ENMM_NO_JOINT; of two blocks that
+   * overlap the lower id. enmm_name has the names.
    */
   uint32_t subject;
   /**
@@ -847,9 +998,17 @@ uint32_t enmm_abi_version(void);
 
 /**
  * Message of the last call that failed on the calling thread: fault, value, limit and remedy. It is empty when none
- * has failed, and valid until the next one fails on this thread or the thread ends.
+ * has failed.
+ *
+ * The address is the same for all calls of a thread and valid until the thread ends; the next call that fails there
+ * replaces the text. A message of more than 4095 bytes ends with "...".
  */
 const char *enmm_last_error(void);
+
+/**
+ * Name of a status, such as "ENMM_BUSY"; "unknown status" for a number that is none. The text is never freed.
+ */
+const char *enmm_status_name(int32_t status);
 
 /**
  * Builds the model of a case file. Nothing moves yet.
@@ -894,11 +1053,20 @@ void enmm_destroy(struct enmm_model *model);
 /**
  * Computes the initial equilibrium with the inputs that have been set: runs the static stages before the first dynamic
  * one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
- * equilibrium.
+ * equilibrium. enmm_get_start_info says whether the model came to rest.
  *
- * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
+ * Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model; ENMM_INTERRUPTED.
  */
 enmm_status enmm_start(struct enmm_model *model);
+
+/**
+ * Writes how the search for the initial equilibrium ended. `info->struct_size` must be set.
+ *
+ * A model that did not come to rest is no error: enmm_start and enmm_do_step return ENMM_OK, and the log warns.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_start_info(struct enmm_model *model, struct enmm_start_info *info);
 
 /**
  * Advances the model from `t` to exactly `t + h` (s), or not at all.
@@ -909,8 +1077,8 @@ enmm_status enmm_start(struct enmm_model *model);
  * the last stage of the case continues. `info` may be NULL; otherwise its `struct_size` must be set.
  *
  * Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
- * with block, position and cause. The model is then the same as before, to the bit. Without enmm_start the first step
- * also computes the initial equilibrium, and discards it when the step fails.
+ * with block, position and cause; ENMM_INTERRUPTED. The model is then the same as before, to the bit. Without
+ * enmm_start the first step also computes the initial equilibrium, and discards it when the step fails.
  */
 enmm_status enmm_do_step(struct enmm_model *model, double t, double h, struct enmm_step_info *info);
 
@@ -964,6 +1132,29 @@ enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
  * Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
  */
 enmm_status enmm_set_log_callback(struct enmm_model *model, enmm_log_callback callback, void *user);
+
+/**
+ * Ends the call of enmm_start or enmm_do_step that is in progress with this model, in any thread: it returns
+ * ENMM_INTERRUPTED before its next internal step, and the model is as it was before the call, to the bit.
+ *
+ * It never waits and needs no turn at the model. Without a call in progress it does nothing: a call forgets what came
+ * before it, so that an interrupt just before a call begins has no effect, and a host that cannot know repeats it
+ * until the call has returned. A call that has taken its last internal step ends as if nothing had come. It locks a
+ * table for an instant and so must not be called in a signal handler: set a flag there, and return it from the
+ * progress callback.
+ *
+ * Errors: ENMM_NULL_ARGUMENT, ENMM_DEAD_HANDLE.
+ */
+enmm_status enmm_interrupt(struct enmm_model *model);
+
+/**
+ * Sets the callback that sees the progress of calls with this model and may end them; NULL (as at creation) for none.
+ *
+ * `user` is passed to the callback unchanged, and no longer used after this function has replaced the callback.
+ *
+ * Errors: ENMM_BUSY when a call is in progress, as in the callback itself.
+ */
+enmm_status enmm_set_progress_callback(struct enmm_model *model, enmm_progress_callback callback, void *user);
 
 /**
  * Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised
@@ -1249,6 +1440,39 @@ enmm_status enmm_set_parameter(struct enmm_model *model, uint32_t parameter, dou
  * Errors: as enmm_set_parameter, for the first one that is refused; ENMM_NULL_ARGUMENT when `n` is not 0.
  */
 enmm_status enmm_set_parameters(struct enmm_model *model, const uint32_t *parameters, size_t n, const double *values);
+
+/**
+ * Returns the number of things of a kind, a value of enmm_name_kind. It never changes.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another number, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_name_count(struct enmm_model *model, int32_t kind, size_t *count);
+
+/**
+ * Writes the name of a thing by its kind, a value of enmm_name_kind, and its number, from 0, in UTF-8.
+ *
+ * What the case does not name has a stand-in: "joint[2]" is a joint of the case by its place there, "bedding trace 4"
+ * (or "joint_set[1] trace 4") a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9" any other joint trace,
+ * which a region of another law has parted or which surrounds an island, and "block 3" a block. `*written` gets the
+ * number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only that number.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a kind or a number that does not exist, ENMM_BUFFER_TOO_SMALL,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_name(struct enmm_model *model,
+                      int32_t kind,
+                      uint32_t index,
+                      char *out,
+                      size_t capacity,
+                      size_t *written);
+
+/**
+ * Writes the state of a monitor, by its place among the `[[monitor]]`s of the case. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or a struct_size that no version had,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_monitor_state(struct enmm_model *model, uint32_t monitor, struct enmm_monitor_state *out);
 
 /**
  * Returns the number of blocks, excavated ones included. It never changes.

@@ -5,11 +5,15 @@ coupling repeats the step from a saved state until both agree.
 """
 
 import functools
+import re
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy
 import pytest
 from fmu_support import DISCARD, Instance
+
+PAGE = (Path(__file__).parents[1] / "docs" / "coupling.md").read_text(encoding="utf-8")
 
 END = 0.4
 PRELOAD = numpy.array([0.9e6, 0.56e6])
@@ -202,6 +206,29 @@ def test_explicit_coupling_blows_up_where_implicit_holds(slope_fmu, reference):
     with pytest.raises(Torn):
         couple(slope_fmu, 0.02, explicit)
     assert couple(slope_fmu, 0.02, implicit).error(reference) < 0.4
+
+
+def test_the_page_has_the_errors_of_both_masters(slope_fmu, reference):
+    rows = dict(re.findall(r"^\| ([\d.]+) ms \| (.+) \|$", PAGE, re.MULTILINE))
+    assert list(rows) == ["20", "10", "5", "2.5"]
+    for step, row in rows.items():
+        h = float(step) / 1000
+        course = couple(slope_fmu, h, implicit)
+        counts = course.iterations
+        found = f"{course.error(reference):.3f} | {sum(counts) / len(counts):.1f} ({max(counts)})"
+        blown = "diverges: the slope discards a step"
+        before = blown if step == "20" else f"{couple(slope_fmu, h, explicit).error(reference):.3f}"
+        assert row == f"{before} | {found}"
+
+
+@pytest.mark.parametrize(
+    ("case", "port", "steps"), [("block_on_incline", "block", 100), ("coupled_slope", "toe", 200)]
+)
+def test_the_page_has_the_values_to_compare_with(fmus, opened, case, port, steps):
+    slope = opened(fmus[f"{case}_fmi2.fmu"]).initialize().run(steps, 0.01)
+    found = slope.get(f"{port}.displacement_x", f"{port}.displacement_y")
+    given = re.search(rf"{port}\s\(([^,]+), ([^)]+)\) m", PAGE)
+    assert [float(text.replace("−", "-")) for text in given.groups()] == found
 
 
 def test_rejected_iterations_leave_no_trace(slope_fmu):

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -117,10 +118,12 @@ def test_numpy_types_have_the_layout_of_the_structures(package):
 
 
 def test_values_of_models_have_the_fields_of_the_structures_in_their_order(package):
-    for values in (package.Energies, package.Totals, package.StepInfo, package.PortState, package.Event):
+    generated = (package.Energies, package.Totals, package.StepInfo, package.PortState, package.MonitorState)
+    for values in (*generated, package.Event):
         structure = getattr(package._abi, values.__name__)
         fields = tuple(field for field, _ in structure._fields_[1:] if field != "reserved")
-        assert values._fields == fields, values.__name__
+        # Python tells the name of the subject as well.
+        assert values._fields == fields + (("name",) if values is package.Event else ()), values.__name__
 
 
 def test_every_structure_function_and_constant_of_the_header_is_there(package):
@@ -139,6 +142,7 @@ def test_every_structure_function_and_constant_of_the_header_is_there(package):
         "ENMM_EVENT_": package.EventKind,
         "ENMM_INTERPOLATION_": package.Interpolation,
         "ENMM_LOG_": package.LogLevel,
+        "ENMM_NAME_": package.NameKind,
         "ENMM_PORT_": package.PortKind,
     }
     values = re.findall(r"(ENMM_[A-Z_]+)(?: =)? (\d+)", text)
@@ -372,9 +376,31 @@ def test_events_tell_slip_and_failure(package, incline):
     assert events == incline.events(info.first_event) and incline.events(len(events)) == []
     assert events[1:] == incline.events(1)
     assert events[0].kind is package.EventKind.SLIPPED and events[0].subject == 0
+    assert [events[0].name, events[-1].name] == ["joint[0]", "block 1"]
     failure = events[-1]
     assert (failure.kind, failure.subject) == (package.EventKind.FAILED, 1) and 0 < failure.time < 1.0
     assert [event.time for event in events] == sorted(event.time for event in events)
+
+
+def test_names_are_those_of_the_case_or_stand_ins(package, cases):
+    text = (cases / "block_on_incline.toml").read_text(encoding="utf-8")
+    case = tomllib.loads(text)
+    with package.Model.from_string(text) as model:
+        kinds = {kind: model.names(kind) for kind in package.NameKind}
+        assert kinds[package.NameKind.BLOCK] == ("block 0", "block 1")
+        assert kinds[package.NameKind.JOINT] == ("joint[0]",)
+        assert kinds[package.NameKind.LAW] == tuple(sorted(case["joint_law"]))
+        assert kinds[package.NameKind.ROCK] == tuple(sorted(case["rock"]))
+        assert kinds[package.NameKind.STAGE] == tuple(stage["name"] for stage in case["stage"])
+        assert kinds[package.NameKind.PORT] == tuple(model.ports)
+        assert kinds[package.NameKind.MONITOR] == ("block",)
+        model.do_step(0.0, 0.5)
+        moved = model.monitor("block")
+        assert moved == model.monitor(0)
+        # It stands in the middle of the block, which slides without turning.
+        assert moved.displacement_x == pytest.approx(model.blocks()["displacement_x"][1], rel=1e-6)
+        with pytest.raises(package.NotFoundError, match="no monitor is named 'absent'"):
+            model.monitor("absent")
 
 
 def test_an_overlap_tells_both_blocks_and_the_depth(package):

@@ -391,3 +391,105 @@ def test_empty_arrays_are_arrays(package):
     with package.Model.from_string(ONE_BLOCK.format(domain=f"outline = {SQUARE}")) as model:
         assert model.contacts().shape == (0,) and model.events() == [] and len(model.ports) == 0
         assert model.contacts().dtype == package.CONTACT_DTYPE and np.shares_memory(model.blocks(), model.blocks())
+
+
+# Calls that end early.
+
+
+def test_another_thread_ends_a_step_and_leaves_the_model_as_it_was(package, cases):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        model.start()
+        before, over = model.serialize(), threading.Event()
+
+        def stop():
+            while not over.wait(0.1):  # One that comes before the call has begun is lost.
+                model.interrupt()
+
+        thread = threading.Thread(target=stop)
+        thread.start()
+        try:
+            with pytest.raises(package.CallInterruptedError, match="the model is as it was"):
+                model.do_step(0.0, 1e8)
+        finally:
+            over.set()
+            thread.join()
+        assert model.serialize() == before
+        model.interrupt()
+        model.do_step(0.0, 0.01)
+
+
+def test_progress_shows_how_far_a_call_has_come_and_may_end_it(package, cases):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        seen, before = [], model.serialize()
+
+        def stop(progress):
+            seen.append(progress)
+            with pytest.raises(package.BusyError):
+                model.save()
+            if len(seen) == 3:
+                raise RuntimeError("enough")
+
+        with pytest.raises(RuntimeError, match="enough"):
+            model.do_step(0.0, 1e8, progress=stop)
+        assert model.serialize() == before, "the equilibrium of the step is taken back too"
+        assert seen[0].is_equilibrium and seen[0].time < seen[0].end
+        steps = [progress for progress in seen if not progress.is_equilibrium]
+        assert all(progress.end == 1e8 and progress.unbalanced == -1.0 for progress in steps)
+        model.do_step(0.0, 0.1)
+        assert len(seen) == 3, "a function sees the call alone that it was given to"
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+import enmm
+
+with enmm.Model.from_file(sys.argv[1]) as model:
+    model.start()
+    before, sent = model.serialize(), []
+
+    def send():
+        time.sleep(0.3)
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=send).start()
+    try:
+        model.do_step(0.0, 1e8)
+    except KeyboardInterrupt:
+        print(time.monotonic() - sent[0], model.serialize() == before)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to one process")
+def test_ctrl_c_ends_a_step_and_leaves_the_model_as_it_was(package, cases):
+    program = [sys.executable, "-c", INTERRUPTED, str(cases / "coupled_slope.toml")]
+    result = subprocess.run(program, capture_output=True, text=True, timeout=60, check=False)
+    assert result.returncode == 0, result.stderr
+    late, same = result.stdout.split()
+    print(f"KeyboardInterrupt {1e3 * float(late):.1f} ms after the signal")
+    assert float(late) < 5.0 and same == "True"
+
+
+# A start that is not at rest.
+
+
+@pytest.mark.parametrize("call", ["start", "do_step"])
+def test_a_lost_equilibrium_is_a_warning_once(package, cases, call):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        model.ports["toe"].set_force(0.45e6, 0.28e6)
+        seek = model.start if call == "start" else lambda: model.do_step(0.0, 0.01)
+        with pytest.warns(package.EquilibriumWarning, match="not at rest at time 0") as caught:
+            seek()
+        assert [Path(warning.filename).name for warning in caught] == [Path(__file__).name]
+        info = model.start_info()
+        assert info.started and not info.settled and info.steps > 100 and info.unbalanced > 1e-3
+        model.do_step(model.time, 0.01)
+
+
+def test_an_equilibrium_that_is_reached_is_no_warning(package, cases, recwarn):
+    with package.Model.from_file(cases / "coupled_slope.toml") as model:
+        info = model.start()
+        assert info.started and info.settled and not info.failed and info.unbalanced == 0.0
+        model.restore(model.save())
+        model.do_step(0.0, 0.01)
+    assert not recwarn.list

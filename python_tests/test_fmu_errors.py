@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import fmu_support
-from fmu_support import C_TYPES, DISCARD, ERROR, FATAL, OK, TYPES, Instance, size
+from fmu_support import C_TYPES, DISCARD, ERROR, FATAL, OK, TYPES, WARNING, Instance, fmpy, size
 
 H = 0.01
 NAN, INF = float("nan"), float("inf")
@@ -634,3 +634,19 @@ def test_extreme_inputs_give_finite_outputs(running, extreme):
     assert instance.step(0.02, H) in (OK, DISCARD)
     assert all(abs(value) < INF for value in instance.get(*instance.fmu.outputs()))
     recovers(instance, state, expected)
+
+
+def test_a_lost_equilibrium_is_a_warning_and_masters_go_on(slope_fmu, opened):
+    """Half the force that holds the toe: the call warns, the log says why, and FMPy runs the slope as it slides."""
+    lost = {"toe.force_x": 0.45e6, "toe.force_y": 0.28e6}
+    instance = opened(slope_fmu, logging=True)
+    instance.check(instance.set_up(0.0, None))
+    instance.check(instance.set(lost))
+    assert instance.exit_initialization() == WARNING
+    assert any("not at rest at time 0" in text for _, _, text in instance.log), instance.log
+    instance.check(instance.step(0.0, 0.05))
+    result = fmpy.simulate_fmu(
+        str(slope_fmu.path), start_values=lost, stop_time=0.05, step_size=0.01, output=["toe.displacement_x"]
+    )
+    (moved,) = instance.get("toe.displacement_x")
+    assert moved < 0.0 and result["toe.displacement_x"][-1] == moved

@@ -8,8 +8,10 @@
 //! # API boundary
 //!
 //! [`model`], [`cosimulation`] and [`geometry`] are the interface of the engine; `CHANGELOG.md` announces its changes.
-//! [`model::tables`] names the tables that a built model and its state hold. The other rooms are private. The feature
-//! `internals` opens them for another integrator and for tests; they change without notice.
+//! Forces, velocities and other vectors are [`geometry::Vector`]s, points [`geometry::Point`]s; inputs take a pair
+//! `[x, y]` of numbers as well. [`model::tables`] names the tables that a built model and its state hold. The other
+//! rooms are private. The feature `internals` opens them for another integrator and for tests; they change without
+//! notice.
 #![forbid(unsafe_code)]
 // Parts of the rooms serve the implicit integrator and tests alone.
 #![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports))]

@@ -1,11 +1,13 @@
 //! Co-simulation: steps cover exactly their interval, on a grid that no host can shift, all or nothing; saved states,
 //! events, inputs and parameters.
 
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 use crate::common::saved::Whole;
 use crate::common::{example as text_of, examples};
-use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, apply};
+use enmm::cosimulation::{Cosimulation, CosimulationError, EventKind, Interpolation, Named, Pace, Watch, apply};
 use enmm::geometry::Vector;
 use enmm::model::Mechanism;
 use enmm::model::bytes::{Keeper, decode, encode};
@@ -481,4 +483,101 @@ fn a_case_for_the_implicit_integrator_is_refused_with_its_remedy() {
     for part in ["block.toml", "solver.integrator", "\"implicit\"", "use \"explicit\"", "the program enmm"] {
         assert!(refused.contains(part), "{part}: {refused}");
     }
+}
+
+#[test]
+fn ports_are_found_by_name_and_their_blocks_take_forces_by_id_or_number() {
+    let mut slope = model("coupled_slope");
+    assert_eq!(["toe", "face", "plane"].map(|name| slope.find_port(name).unwrap()), [0, 1, 2]);
+    let error = slope.find_port("crest").unwrap_err();
+    assert!(matches!(error, CosimulationError::NoPort { .. }));
+    assert_eq!(error.to_string(), "no port is named \"crest\"; ports of the case: toe, face, plane");
+    let (id, number) = (slope.ports()[0].block, slope.port_block(0).unwrap());
+    assert_eq!(id.number(), number);
+    slope.set_block_force(id, [1e3, 2e3], 3.0).unwrap();
+    let by_id = slope.inputs().clone();
+    slope.set_block_force(number, [0.0, 0.0], 0.0).unwrap();
+    assert_ne!(*slope.inputs(), by_id);
+    slope.set_block_force(number, Vector::new(1e3, 2e3), 3.0).unwrap();
+    assert_eq!(*slope.inputs(), by_id);
+    let error = slope.set_block_force(u32::MAX, [0.0, 0.0], 0.0).unwrap_err().to_string();
+    assert!(error.starts_with("block: is 4294967295, must be less than the number of blocks, 13;"), "{error}");
+    let error = slope.port_block(3).unwrap_err().to_string();
+    assert!(error.starts_with("port: is 3, must be less than the number of ports, 3;"), "{error}");
+}
+
+#[test]
+fn things_have_the_names_of_the_case_or_stand_ins() {
+    let slope = model("fractured_slope");
+    let names = |model: &Cosimulation, kind| -> Vec<String> {
+        (0..model.name_count(kind)).map(|k| model.name(kind, k).unwrap()).collect()
+    };
+    let joints = names(&slope, Named::Joint);
+    let mut unlike = joints.clone();
+    unlike.sort();
+    unlike.dedup();
+    assert_eq!(unlike.len(), joints.len(), "each joint has a name of its own");
+    assert_eq!(joints[2..4], ["joint[2]", "joint_set[0] trace 0"]);
+    assert_eq!(joints.last().unwrap(), "joint_set[1] trace 52");
+    let bridged = model("step_path");
+    assert_eq!(names(&bridged, Named::Joint)[3..5], ["joint[3]", "rock bridge 4"]);
+    assert_eq!(names(&bridged, Named::Law), ["joint", "rock"]);
+    let error = slope.name(Named::Law, 9).unwrap_err().to_string();
+    assert!(error.starts_with("index: is 9, must be less than the number of joint laws,"), "{error}");
+}
+
+#[test]
+fn a_monitor_has_the_motion_of_its_place() {
+    let mut incline = model("block_on_incline");
+    go(&mut incline, 0.5);
+    let (displacement, velocity) = incline.monitor_state(0).unwrap();
+    let block = incline.block_states()[1];
+    // It stands in the middle of a block that slides without turning.
+    assert!((displacement - block.displacement).norm() < 1e-6 * block.displacement.norm());
+    assert!((velocity - block.velocity).norm() < 1e-6 * block.velocity.norm());
+    assert!(incline.monitor_state(1).is_err());
+}
+
+/// A watch that ends calls after so many looks, and what it has seen.
+fn ending_after(looks: usize) -> (Watch, Arc<Mutex<Vec<Pace>>>) {
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let own = Arc::clone(&seen);
+    let watch = move |pace: &Pace| {
+        let mut seen = own.lock().unwrap();
+        seen.push(*pace);
+        if seen.len() < looks { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    (Box::new(watch), seen)
+}
+
+#[test]
+fn an_interrupted_call_leaves_the_model_as_it_was_and_changes_nothing_later() {
+    let bytes = |model: &Cosimulation| model.serialize(&model.save()).unwrap();
+    let mut whole = model("coupled_slope");
+    let mut slope = model("coupled_slope");
+    let before = bytes(&slope);
+    for call in [Cosimulation::start, |model: &mut Cosimulation| model.do_step(0.0, 1.0).map(|_| ())] {
+        let (watch, seen) = ending_after(100);
+        slope.set_watch(Some(watch));
+        assert!(matches!(call(&mut slope), Err(CosimulationError::Interrupted)));
+        assert_eq!(bytes(&slope), before, "nothing is left of the equilibrium");
+        let last = seen.lock().unwrap()[99];
+        assert!(last.is_equilibrium && last.unbalanced.is_some() && last.time > 0.0 && last.time < last.end);
+    }
+    slope.set_watch(None);
+    slope.do_step(0.0, 0.0123).unwrap();
+    whole.do_step(0.0, 0.0123).unwrap();
+    let before = bytes(&slope);
+    let (watch, seen) = ending_after(20);
+    slope.set_watch(Some(watch));
+    assert!(matches!(slope.do_step(0.0123, 1e8), Err(CosimulationError::Interrupted)));
+    assert_eq!(bytes(&slope), before);
+    let last = seen.lock().unwrap()[19];
+    assert!(!last.is_equilibrium && last.unbalanced.is_none() && last.end == 1e8 + 0.0123);
+    assert!((last.time - 0.012 - 19.0 * slope.internal_step()).abs() < 2.0 * slope.internal_step(), "{last:?}");
+    let (watch, _) = ending_after(usize::MAX);
+    slope.set_watch(Some(watch));
+    slope.do_step(0.0123, 0.05).unwrap();
+    whole.do_step(0.0123, 0.05).unwrap();
+    assert_eq!(bytes(&slope), bytes(&whole), "a watch changes no bit");
 }

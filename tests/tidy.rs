@@ -16,7 +16,7 @@ const ROOMS: [(&str, usize); 9] = [
     ("state", 1900),
     ("step", 3300),
     ("model", 5550),
-    ("cosimulation", 1480),
+    ("cosimulation", 1_800),
 ];
 const COLUMNS_MAX: usize = 120;
 const README_LINES_MAX: usize = 200;

@@ -43,7 +43,10 @@ using BlockState = enmm_block_state;
 using Contact = enmm_contact;
 using Energies = enmm_energies;
 using Event = enmm_event;
+using MonitorState = enmm_monitor_state;
 using PortState = enmm_port_state;
+using Progress = enmm_progress;
+using StartInfo = enmm_start_info;
 using StepInfo = enmm_step_info;
 using Totals = enmm_totals;
 
@@ -133,6 +136,8 @@ inline void check_case(const std::string &toml, const std::string &base_dir = ".
 class Model {
 public:
     using Log = std::function<void(enmm_log_level, const std::string &)>;
+    /** Sees a call in progress; false ends it. */
+    using Watch = std::function<bool(const Progress &)>;
 
     /** Builds the model of a case file. */
     static Model from_file(const std::string &path)
@@ -169,13 +174,47 @@ public:
 
     // Time.
 
-    void start() { call([&](Frame &) { return enmm_start(handle_); }); }
+    /** Seeks the initial equilibrium, which need not be reached: see `settled` of what it returns. */
+    StartInfo start()
+    {
+        auto info = detail::sized<StartInfo>();
+        call([&, handle = handle_](Frame &) {
+            const enmm_status status = enmm_start(handle);
+            if (status == ENMM_OK)
+                (void)enmm_get_start_info(handle, &info); // which is empty when the log has ended the model
+            return status;
+        });
+        return info;
+    }
+
+    StartInfo start_info() const { return filled<StartInfo>(enmm_get_start_info); }
 
     StepInfo do_step(double t, double h)
     {
         auto info = detail::sized<StepInfo>();
         call([&](Frame &) { return enmm_do_step(handle_, t, h, &info); });
         return info;
+    }
+
+    /** Ends the start or do_step that is in progress in another thread, which throws ENMM_INTERRUPTED. */
+    void interrupt() const { detail::check(enmm_interrupt(handle_)); }
+
+    /**
+     * Sets what sees calls in progress, at most every 50 ms; an empty function for nothing. What it throws ends the call
+     * and comes out of it. It must not use the model, but for interrupt.
+     */
+    void set_progress(Watch watch)
+    {
+        const enmm_progress_callback callback = watch ? look : nullptr;
+        auto fresh = std::make_shared<const Watch>(std::move(watch));
+        call([&](Frame &frame) {
+            const enmm_status status = enmm_set_progress_callback(handle_, callback, frame.desk.get());
+            if (status == ENMM_OK) {
+                const std::lock_guard<std::mutex> guard(frame.desk->mutex);
+                frame.desk->watch.swap(fresh);
+            }
+            return status;
+        });
     }
 
     double time() const { return detail::number<double>(handle_, enmm_get_time); }
@@ -320,6 +359,33 @@ public:
         return state;
     }
 
+    // Names.
+
+    /** Names of all things of a kind by their numbers; see enmm_name for what the case does not name. */
+    std::vector<std::string> names(enmm_name_kind kind) const
+    {
+        std::size_t count = 0;
+        detail::check(enmm_name_count(handle_, kind, &count));
+        std::vector<std::string> found;
+        for (std::uint32_t k = 0; k < count; ++k)
+            found.push_back(name(kind, k));
+        return found;
+    }
+
+    std::string name(enmm_name_kind kind, std::uint32_t index) const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_name(handle_, kind, index, out, capacity, written);
+        });
+    }
+
+    MonitorState monitor_state(std::uint32_t monitor) const
+    {
+        auto state = detail::sized<MonitorState>();
+        detail::check(enmm_get_monitor_state(handle_, monitor, &state));
+        return state;
+    }
+
     // The model now.
 
     std::size_t block_count() const { return detail::number<std::size_t>(handle_, enmm_block_count); }
@@ -433,11 +499,18 @@ private:
     struct Desk : std::enable_shared_from_this<Desk> {
         std::mutex mutex;
         std::shared_ptr<const Log> log;
+        std::shared_ptr<const Watch> watch;
 
         std::shared_ptr<const Log> current()
         {
             const std::lock_guard<std::mutex> guard(mutex);
             return log;
+        }
+
+        std::shared_ptr<const Watch> watcher()
+        {
+            const std::lock_guard<std::mutex> guard(mutex);
+            return watch;
         }
     };
 
@@ -488,6 +561,21 @@ private:
         } catch (...) {
             if (ours)
                 frame->thrown = std::current_exception();
+        }
+    }
+
+    /** No exception may pass the library: it waits in the frame until the call is over. */
+    static int32_t look(const Progress *progress, void *user) noexcept
+    {
+        const auto desk = static_cast<Desk *>(user)->shared_from_this();
+        Frame *const frame = Frame::innermost();
+        try {
+            const auto watch = desk->watcher();
+            return watch && *watch && !(*watch)(*progress);
+        } catch (...) {
+            if (frame && frame->desk == desk)
+                frame->thrown = std::current_exception();
+            return 1;
         }
     }
 

@@ -17,6 +17,8 @@ namespace {
 
 int wrong = 0;
 
+struct LooksBad {};
+
 void must(bool holds, const char *what)
 {
     if (!holds) {
@@ -35,6 +37,31 @@ bool holds(enmm::Model &model, const enmm::State &from, std::uint32_t block, dou
     for (int k = 0; k < 30; ++k)
         model.do_step(begin + k * h, h);
     return (model.block_states().at(block).flags & ENMM_BLOCK_FAILED) == 0;
+}
+
+/** A function that sees a step of years ends it; the model is where it was. */
+void calls_can_be_stopped(enmm::Model &model)
+{
+    const double before = model.time();
+    int looks = 0;
+    model.set_progress([&](const enmm::Progress &progress) {
+        must(progress.time < progress.end, "a call in progress has not come to its end");
+        return ++looks < 3;
+    });
+    try {
+        model.do_step(before, 1e8);
+        must(false, "a step that was stopped throws");
+    } catch (const enmm::Error &error) {
+        must(error.status() == ENMM_INTERRUPTED && looks == 3, "the third look ends the step");
+    }
+    model.set_progress([](const enmm::Progress &) -> bool { throw LooksBad(); });
+    try {
+        model.do_step(before, 1e8);
+        must(false, "what a look throws comes out of the step");
+    } catch (const LooksBad &) {
+    }
+    model.set_progress({});
+    must(model.time() == before, "a step that was stopped moves nothing");
 }
 
 void errors_are_exceptions(enmm::Model &model)
@@ -91,6 +118,7 @@ void run(const char *path)
     must(model.find_block_at({state.centroid_x, state.centroid_y}) == block, "a block is where its centroid is");
     must(!model.find_block_at({1e6, 1e6}), "no rock is far away");
     errors_are_exceptions(model);
+    calls_can_be_stopped(model);
 
     other.set_log([](enmm_log_level, const std::string &) { throw 7; });
     try {

@@ -27,6 +27,14 @@ pub enum CosimulationError {
     /// A parameter cannot have a value.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
+    /// No port of the case has a name.
+    #[error("no port is named {name:?}; ports of the case: {ports}")]
+    NoPort {
+        /// The name that was asked for.
+        name: String,
+        /// Names of the ports.
+        ports: String,
+    },
     /// A communication step does not begin where the model stands.
     #[error("t: is {given} s, must be the time of the model, {own} s; step from there, or restore a saved state")]
     Time {
@@ -38,6 +46,9 @@ pub enum CosimulationError {
     /// The step failed numerically.
     #[error("{0}; the model has been rolled back: take a smaller load step, or look at the block")]
     Step(#[from] StepError),
+    /// The watch of the model has ended the call.
+    #[error("the call was interrupted; the model is as it was before the call: call again to go on")]
+    Interrupted,
     /// The communication step that should go on is over.
     #[error("the communication step is over, or the model was moved to another time since: begin another")]
     Stale,

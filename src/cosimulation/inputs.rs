@@ -6,8 +6,9 @@
 
 use std::fmt::Display;
 
+use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::state::{Inputs, Port, PortKind};
+use crate::state::{Inputs, PortKind};
 
 use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX, VELOCITY_MAX};
 use super::{Cosimulation, CosimulationError};
@@ -17,7 +18,8 @@ impl Cosimulation {
     ///
     /// # Errors
     /// A value that is not finite or too large.
-    pub fn set_gravity(&mut self, gravity: Vector) -> Result<(), CosimulationError> {
+    pub fn set_gravity(&mut self, gravity: impl Into<Vector>) -> Result<(), CosimulationError> {
+        let gravity = gravity.into();
         vector(&"gravity", gravity, ACCELERATION_MAX, "m/s²")?;
         self.set(|inputs| replace(&mut inputs.gravity, gravity));
         Ok(())
@@ -28,7 +30,8 @@ impl Cosimulation {
     ///
     /// # Errors
     /// A value that is not finite or too large.
-    pub fn set_base_acceleration(&mut self, acceleration: Vector) -> Result<(), CosimulationError> {
+    pub fn set_base_acceleration(&mut self, acceleration: impl Into<Vector>) -> Result<(), CosimulationError> {
+        let acceleration = acceleration.into();
         vector(&"base_acceleration", acceleration, ACCELERATION_MAX, "m/s²")?;
         self.set(|inputs| replace(&mut inputs.base_acceleration, acceleration));
         Ok(())
@@ -63,11 +66,18 @@ impl Cosimulation {
     }
 
     /// Sets force (N/m) through the centroid of a block and moment about it (N·m/m, counter-clockwise); they take the
-    /// position of those that a port of the case has at the start.
+    /// position of those that a port of the case has at the start. The block is an id or its number, such as that of
+    /// [`Cosimulation::port_block`].
     ///
     /// # Errors
     /// A value that is not finite or too large, or a block that does not exist.
-    pub fn set_block_force(&mut self, block: u32, force: Vector, moment: f64) -> Result<(), CosimulationError> {
+    pub fn set_block_force(
+        &mut self,
+        block: impl Into<BlockId>,
+        force: impl Into<Vector>,
+        moment: f64,
+    ) -> Result<(), CosimulationError> {
+        let (block, force) = (block.into(), force.into());
         self.set_block_forces(std::iter::once((block, force, moment)))
     }
 
@@ -75,10 +85,11 @@ impl Cosimulation {
     ///
     /// # Errors
     /// The first value that [`Cosimulation::set_block_force`] would refuse.
-    pub fn set_block_forces(
+    pub fn set_block_forces<B: Into<BlockId>, V: Into<Vector>>(
         &mut self,
-        forces: impl Iterator<Item = (u32, Vector, f64)> + Clone,
+        forces: impl Iterator<Item = (B, V, f64)> + Clone,
     ) -> Result<(), CosimulationError> {
+        let forces = forces.map(|(block, force, moment)| (block.into(), force.into(), moment));
         for (block, force, moment) in forces.clone() {
             self.check_block(block)?;
             vector(&format_args!("force on block {block}"), force, VALUE_MAX, "N/m")?;
@@ -86,9 +97,8 @@ impl Cosimulation {
         }
         self.set(|inputs| {
             forces.fold(false, |changed, (block, force, moment)| {
-                let k = block as usize;
-                let force = replace(&mut inputs.block_force[k], force);
-                changed | force | replace(&mut inputs.block_moment[k], moment)
+                let force = replace(&mut inputs.block_force[block], force);
+                changed | force | replace(&mut inputs.block_moment[block], moment)
             })
         });
         Ok(())
@@ -98,7 +108,8 @@ impl Cosimulation {
     ///
     /// # Errors
     /// A value that is not finite or too large, or a port that does not exist or is no boundary.
-    pub fn set_boundary_traction(&mut self, port: usize, traction: Vector) -> Result<(), CosimulationError> {
+    pub fn set_boundary_traction(&mut self, port: usize, traction: impl Into<Vector>) -> Result<(), CosimulationError> {
+        let traction = traction.into();
         let name = self.check_port(port, &[PortKind::Boundary], "a port of a boundary")?;
         vector(&format_args!("traction on port {name}"), traction, VALUE_MAX, "Pa")?;
         self.set(|inputs| replace(&mut inputs.port_traction[port], traction));
@@ -151,9 +162,9 @@ impl Cosimulation {
     }
 
     /// Checks that a block exists.
-    pub(super) fn check_block(&self, block: u32) -> Result<(), CosimulationError> {
+    pub(super) fn check_block(&self, block: BlockId) -> Result<(), CosimulationError> {
         let count = self.simulation.model().covers.block_count();
-        if (block as usize) < count {
+        if block.index() < count {
             return Ok(());
         }
         let limit = format!("less than the number of blocks, {count}");
@@ -166,14 +177,6 @@ impl Cosimulation {
             return Ok(&found.name);
         }
         Err(CosimulationError::value("port", &found.name, what, "use the input of its own kind"))
-    }
-
-    /// A port.
-    pub(super) fn port(&self, port: usize) -> Result<&Port, CosimulationError> {
-        self.ports().get(port).ok_or_else(|| {
-            let limit = format!("less than the number of ports, {}", self.ports().len());
-            CosimulationError::value("port", port, &limit, "name the place by `[[port]]` in the case")
-        })
     }
 
     /// Sets inputs; `change` returns whether one is new.

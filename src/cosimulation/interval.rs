@@ -71,8 +71,9 @@ impl Cosimulation {
     /// Advances from `t` to exactly `t + h` (s), or not at all.
     ///
     /// # Errors
-    /// Times that do not fit, or a numerical failure; the model is then as it was, to the bit. A first step then takes
-    /// the initial equilibrium back as well, unless [`Cosimulation::start`] has sought it.
+    /// Times that do not fit, a numerical failure, or an end by the watch ([`Cosimulation::set_watch`]); the model is
+    /// then as it was, to the bit. A first step then takes the initial equilibrium back as well, unless
+    /// [`Cosimulation::start`] has sought it.
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<StepInfo, CosimulationError> {
         let mut interval = self.begin(t, h)?;
         while self.advance(&mut interval)? {}
@@ -106,8 +107,8 @@ impl Cosimulation {
     /// Takes one internal step of an interval; false when its end is reached.
     ///
     /// # Errors
-    /// A numerical failure; the model is then as it was when the interval began. An interval that is over, or that the
-    /// model has left by going back to a saved state or by beginning another.
+    /// A numerical failure or an end by the watch; the model is then as it was when the interval began. An interval
+    /// that is over, or that the model has left by going back to a saved state or by beginning another.
     pub fn advance(&mut self, interval: &mut Interval) -> Result<bool, CosimulationError> {
         if interval.serial != self.serial {
             return Err(CosimulationError::Stale);
@@ -115,6 +116,7 @@ impl Cosimulation {
         let same = self.same_time(interval.end);
         let left = interval.end - self.grid_time();
         if left > same {
+            self.watch_step(interval.end).map_err(|error| self.fail(error))?;
             let dt = self.internal(left, same).map_err(|error| self.fail(error))?;
             interval.info.steps += 1;
             interval.info.dt = interval.info.dt.max(dt);

@@ -1,27 +1,53 @@
 //! A model that a host drives through communication steps: inputs, transactional steps, events, ports, saved states.
 //! The C ABI and the FMUs are thin over [`Cosimulation`].
+//!
+//! A host that holds the toe of a slope, whose case names it by `[[port]]`:
+//!
+//! ```
+//! use enmm::geometry::Vector;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let case = std::path::Path::new("examples/cases/coupled_slope.toml");
+//! let mut slope = enmm_io::load_case(case)?.cosimulation()?;
+//! let toe = slope.find_port("toe")?;
+//! let block = slope.port_block(toe)?;
+//! let held = Vector::new(0.9e6, 0.56e6); // N/m; [0.9e6, 0.56e6] would do as well.
+//! slope.set_block_force(block, held, 0.0)?;
+//! slope.start()?;
+//! slope.set_block_force(block, held * 0.5, 0.0)?;
+//! slope.do_step(0.0, 0.01)?;
+//! assert!(slope.port_state(toe).displacement.x < 0.0, "the toe moves out of the slope");
+//! # Ok(())
+//! # }
+//! ```
 
 mod error;
 mod inputs;
 mod interval;
+mod names;
 mod observe;
 mod parameter;
+mod ports;
 mod saved;
 mod threads;
 mod tuning;
+mod watch;
 
 pub use crate::state::{Event, EventKind, Input, PortKind, Quantity};
 pub use error::CosimulationError;
 pub use interval::{Interval, StepInfo};
+pub use names::Named;
 pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
+pub use watch::{Pace, Watch};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::cover::BlockId;
 use crate::geometry::Vector;
 pub use crate::model::case::limits;
 use crate::model::case::{Case, Invalid, StageKind};
@@ -31,6 +57,7 @@ use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM, Wanted};
 use threads::Pool;
 use tuning::Parameters;
+use watch::Watcher;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,6 +136,8 @@ pub struct Cosimulation {
     serial: u64,
     /// Threads of steps, when they are more than the caller's own and the model is worth them.
     pool: Option<Arc<Pool>>,
+    /// What looks at calls, and may end them.
+    watcher: Watcher,
 }
 
 impl Cosimulation {
@@ -133,6 +162,7 @@ impl Cosimulation {
             backup,
             serial: 0,
             pool: None,
+            watcher: Watcher::default(),
         })
     }
 
@@ -183,11 +213,6 @@ impl Cosimulation {
         stop_time(self.case())
     }
 
-    /// Ports of the case, in its order.
-    pub fn ports(&self) -> &[Port] {
-        &self.simulation.model().ports
-    }
-
     /// Events so far, in order; their times count as [`Cosimulation::time`] does.
     pub fn events(&self) -> impl ExactSizeIterator<Item = Event> + '_ {
         let start = self.progress.start;
@@ -197,6 +222,11 @@ impl Cosimulation {
     /// Whether the initial equilibrium has been sought.
     pub fn is_started(&self) -> bool {
         self.progress.started
+    }
+
+    /// Internal steps that the initial equilibrium took.
+    pub fn initial_steps(&self) -> u64 {
+        self.progress.origin
     }
 
     /// Net over applied force of the initial equilibrium, when its stage was over before the model came to rest: the
@@ -220,7 +250,7 @@ impl Cosimulation {
     /// Seeks the initial equilibrium: runs the static stages before the first dynamic one. Does nothing later.
     ///
     /// # Errors
-    /// A numerical failure; the model is then as it was before.
+    /// A numerical failure, or an end by the watch; the model is then as it was before.
     pub fn start(&mut self) -> Result<(), CosimulationError> {
         if !self.progress.started {
             self.keep();
@@ -253,9 +283,12 @@ impl Cosimulation {
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
         for _ in 0..initial_stages(self.case()) {
+            let mut unbalanced = None;
             let step = |model: &mut Self| {
+                model.watch_equilibrium(unbalanced)?;
                 let wanted = model.simulation.rest_due();
                 let report = model.step(None, if wanted { Wanted::Report } else { Wanted::Nothing })?;
+                unbalanced = if wanted { Some(report.unbalanced) } else { unbalanced };
                 Ok::<_, CosimulationError>(wanted.then_some(report))
             };
             let last = settle::until_over(self, Self::simulation, step)?;
@@ -302,7 +335,7 @@ impl Cosimulation {
     ) -> Result<(), CosimulationError> {
         let input = match input {
             Input::Block(block) => {
-                self.check_block(block)?;
+                self.check_block(BlockId::new(block as usize))?;
                 input
             }
             Input::Port(port) => match self.port(port as usize)? {

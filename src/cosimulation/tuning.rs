@@ -111,6 +111,7 @@ impl Cosimulation {
         other.simulation.drive().clone_from(&self.simulation.state().drive);
         other.simulation.set_serial(self.pool.is_none());
         (other.progress, other.pool, other.serial) = (self.progress, self.pool.take(), self.serial + 1);
+        other.watcher = std::mem::take(&mut self.watcher);
         *self = other;
         Ok(())
     }

@@ -23,6 +23,13 @@ id! {
     /// A block: rock that no joint cuts through.
     BlockId: plain
 }
+impl From<u32> for BlockId {
+    /// The id of a number that a host gives; there need not be such a block.
+    fn from(number: u32) -> Self {
+        Self(number)
+    }
+}
+
 id! {
     /// A manifold element.
     ElementId: optional

@@ -31,7 +31,8 @@ const INTRODUCTION: &str = "\
  * function allows it.
  *
  * Threads. Models share nothing: any number can be used at the same time. One thread at a time may use a model, until
- * its messages have been delivered; any other gets ENMM_BUSY. A state may be used by many.
+ * its messages have been delivered; any other gets ENMM_BUSY. enmm_interrupt alone can be called beside a call, to end
+ * it. A state may be used by many.
  *
  * Processes. A forked process has models and states of its own, as they were at the fork, and may use them; one that
  * another thread was using at the fork stays ENMM_BUSY there. No call waits for a thread that the new process does not
@@ -78,9 +79,13 @@ fn plain() -> Result<String, String> {
         line_length: 120,
         ..Config::default()
     };
-    let mut builder = Builder::new().with_config(config).include_item("enmm_interpolation").include_item("enmm_input");
+    let enumerations = ["enmm_interpolation", "enmm_input", "enmm_name_kind"];
+    let builder = Builder::new().with_config(config);
+    let mut builder = enumerations.into_iter().fold(builder, Builder::include_item);
     let sources = root().join("ffi/capi/src");
-    for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/parameters", "abi/observe", "abi/state"] {
+    let files =
+        ["types", "abi/library", "abi/model", "abi/inputs", "abi/parameters", "abi/names", "abi/observe", "abi/state"];
+    for file in files {
         builder = builder.with_src(sources.join(file).with_extension("rs"));
     }
     let own = std::env::temp_dir().join(format!("enmm-structures-{}.rs", std::process::id()));

@@ -49,7 +49,8 @@ pub fn page() -> String {
     );
     page += &part(
         "Monitors",
-        "Variables of FMUs with `monitor.`, the name of the monitor and a dot before them.",
+        "Members of `enmm_monitor_state`, fields of `Model.monitor()`; variables of FMUs with `monitor.`, the name of \
+         the monitor and a dot before them.",
         "column of `history.csv` behind the name",
         &MONITOR_QUANTITIES,
     );

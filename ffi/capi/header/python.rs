@@ -13,10 +13,18 @@ const BLOCKS: &str = "enmm_block_state";
 const UNSEEN: [&str; 2] = ["struct_size", "reserved"];
 
 /// Structures that models give as tuples with names.
-const TUPLES: [&str; 4] = ["enmm_step_info", "enmm_energies", "enmm_totals", "enmm_port_state"];
+const TUPLES: [&str; 7] = [
+    "enmm_start_info",
+    "enmm_progress",
+    "enmm_step_info",
+    "enmm_energies",
+    "enmm_totals",
+    "enmm_port_state",
+    "enmm_monitor_state",
+];
 
 /// Enumerations: name in C, class in Python, prefix of the members in C, documentation.
-const ENUMERATIONS: [[&str; 4]; 6] = [
+const ENUMERATIONS: [[&str; 4]; 7] = [
     ["enmm_contact_state", "ContactState", "ENMM_CONTACT_", "`state` of a contact."],
     [
         "enmm_event_kind",
@@ -28,6 +36,7 @@ const ENUMERATIONS: [[&str; 4]; 6] = [
     ["enmm_input", "Input", "ENMM_INPUT_", "An input."],
     ["enmm_interpolation", "Interpolation", "ENMM_INTERPOLATION_", "How inputs go through a communication step."],
     ["enmm_log_level", "LogLevel", "ENMM_LOG_", "Weight of a message."],
+    ["enmm_name_kind", "NameKind", "ENMM_NAME_", "What has a number and a name."],
 ];
 /// Prefix of the flags of a block, and of their documentation.
 const FLAG: [&str; 2] = ["#define ENMM_BLOCK_", "Flag of a block: "];
@@ -54,6 +63,8 @@ from typing import NamedTuple
 const CALLBACK: &str = r#"
 LOG_CALLBACK = ctypes.CFUNCTYPE(None, c_void_p, c_int32, c_char_p)
 """`enmm_log_callback`."""
+PROGRESS_CALLBACK = ctypes.CFUNCTYPE(c_int32, POINTER(Progress))
+"""`enmm_progress_callback` without the pointer of its host, which C passes behind and nobody reads."""
 "#;
 
 /// The modules of layouts and of values that belong to a header.
@@ -224,7 +235,7 @@ impl Structure {
             None => comment,
         };
         let mut text = format!("\n\nclass {}(NamedTuple):\n    \"\"\"{text}\"\"\"\n\n", self.class);
-        for Field { name, kind, comment } in &self.fields[1..] {
+        for Field { name, kind, comment } in self.fields.iter().filter(|field| !UNSEEN.contains(&field.name.as_str())) {
             let kind = if *kind == "c_double" { "float" } else { "int" };
             text += &format!("    {name}: {kind}\n    \"\"\"{}\"\"\"\n", without_functions(&comment.join("\n    ")));
         }
@@ -295,6 +306,7 @@ fn by_value(kind: &str) -> Result<&'static str, String> {
         "uint64_t" => Ok("c_uint64"),
         "int32_t" => Ok("c_int32"),
         "enmm_log_callback" => Ok("LOG_CALLBACK"),
+        "enmm_progress_callback" => Ok("PROGRESS_CALLBACK"),
         _ if is_enumeration => Ok("c_int32"),
         _ => Err(format!("no type of ctypes is known for {kind}")),
     }

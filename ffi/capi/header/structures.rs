@@ -1,7 +1,7 @@
 //! Structures of the header whose members are rows of the engine's tables of quantities.
 
 use engine::cosimulation::{PORT_QUANTITIES, Quantity, TOTALS};
-use engine::model::BLOCK_QUANTITIES;
+use engine::model::{BLOCK_QUANTITIES, MONITOR_QUANTITIES};
 
 use super::layout::{self, Kind};
 
@@ -40,6 +40,8 @@ const PORT: &str = "\
 A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
 /// last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
 /// mean along it.";
+const MONITOR: &str = "\
+A monitor now. Its velocity is that of half an internal step ago.";
 const HEAD: &str = "\
     /// Size of this structure (bytes), set by the caller.
     pub struct_size: usize,
@@ -54,6 +56,7 @@ pub fn source() -> String {
         + &source("enmm_energies", ENERGIES, HEAD, &members(layout::energies()))
         + &source("enmm_totals", TOTALS_TEXT, HEAD, &members(TOTALS.iter()))
         + &source("enmm_port_state", PORT, HEAD, &members(PORT_QUANTITIES.iter()))
+        + &source("enmm_monitor_state", MONITOR, HEAD, &members(MONITOR_QUANTITIES.iter()))
 }
 
 fn members<T: 'static>(table: impl Iterator<Item = &'static Quantity<T>>) -> String {

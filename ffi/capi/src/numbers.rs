@@ -2,7 +2,7 @@
 //! name them one by one.
 
 use engine::cosimulation::{PORT_QUANTITIES, PortState, Quantity, TOTALS, Totals};
-use engine::model::{BLOCK_QUANTITIES, BlockState, ENERGIES, Ledger};
+use engine::model::{BLOCK_QUANTITIES, BlockState, ENERGIES, Ledger, MONITOR_QUANTITIES, MonitorState};
 
 use crate::layout::{Kind, energies};
 use crate::types::*;
@@ -48,11 +48,21 @@ pub struct enmm_port_state {
     numbers: [u64; PORT_QUANTITIES.len()],
 }
 
+/// A monitor now.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_monitor_state {
+    /// Size of this structure (bytes).
+    pub struct_size: usize,
+    numbers: [u64; MONITOR_QUANTITIES.len()],
+}
+
 sized! {
     enmm_block_state 152 { struct_size id flags numbers }
     enmm_energies 128 { struct_size numbers }
     enmm_totals 72 { struct_size numbers }
     enmm_port_state 120 { struct_size numbers }
+    enmm_monitor_state 40 { struct_size numbers }
 }
 
 impl enmm_block_state {
@@ -85,6 +95,12 @@ impl From<&Totals> for enmm_totals {
 impl From<&PortState> for enmm_port_state {
     fn from(port: &PortState) -> Self {
         Self { struct_size: size_of::<Self>(), numbers: words(PORT_QUANTITIES.iter(), port) }
+    }
+}
+
+impl From<&MonitorState> for enmm_monitor_state {
+    fn from(monitor: &MonitorState) -> Self {
+        Self { struct_size: size_of::<Self>(), numbers: words(MONITOR_QUANTITIES.iter(), monitor) }
     }
 }
 

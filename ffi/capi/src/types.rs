@@ -60,6 +60,8 @@ pub enum enmm_status {
     ENMM_WRONG_STATE = 11,
     /// An internal error. The model that was in use can only be destroyed; all others are unharmed.
     ENMM_PANIC = 12,
+    /// The host ended the call, by enmm_interrupt or by its progress callback; the model is as it was before the call.
+    ENMM_INTERRUPTED = 13,
 }
 
 /// How inputs go through a communication step.
@@ -104,6 +106,26 @@ pub enum enmm_input {
     ENMM_INPUT_BLOCK = 4,
     /// Inputs of the port that the index names.
     ENMM_INPUT_PORT = 5,
+}
+
+/// What has a number and a name.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_name_kind {
+    /// A joint trace, which events name by its number.
+    ENMM_NAME_JOINT = 0,
+    /// A joint law, which contacts name by its number.
+    ENMM_NAME_LAW = 1,
+    /// A rock, in the alphabetical order of their names.
+    ENMM_NAME_ROCK = 2,
+    /// A stage, in the order of the case.
+    ENMM_NAME_STAGE = 3,
+    /// A block.
+    ENMM_NAME_BLOCK = 4,
+    /// A place that the case names by `[[monitor]]`, in its order.
+    ENMM_NAME_MONITOR = 5,
+    /// A port, in the order of the case.
+    ENMM_NAME_PORT = 6,
 }
 
 /// State of a contact.
@@ -158,6 +180,53 @@ pub enum enmm_log_level {
 pub type enmm_log_callback =
     Option<unsafe extern "C" fn(user: *mut c_void, level: enmm_log_level, message: *const c_char)>;
 
+/// How the search for the initial equilibrium ended.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_start_info {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// 1 when it has been sought, by a start or by the first step; else 0, as all that follows.
+    pub started: u32,
+    /// 1 when the model came to rest. When it did not, the slope moves, or its static stage needs a longer duration:
+    /// the model slides from time 0 on.
+    pub settled: u32,
+    /// 1 when the slope had failed at the end of the last search of this model.
+    pub failed: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Internal steps that the search took.
+    pub steps: u64,
+    /// Net over applied force at its end when the model did not come to rest; 0 when it did.
+    pub unbalanced: f64,
+}
+
+/// How far a call has come.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_progress {
+    /// Size of this structure (bytes), set by the library.
+    pub struct_size: usize,
+    /// Time reached (s): that of the model or, in the initial equilibrium, since its start.
+    pub time: f64,
+    /// End of the communication step (s), or the most time that the initial equilibrium may take; it ends when the
+    /// model is at rest.
+    pub end: f64,
+    /// In the initial equilibrium the last net over applied force that is known; -1 for none.
+    pub unbalanced: f64,
+    /// 1 while a call seeks the initial equilibrium, else 0.
+    pub is_equilibrium: u32,
+    /// 0.
+    pub reserved: u32,
+}
+
+/// Sees the progress of enmm_start and enmm_do_step. It is called on the thread of the call, between internal steps, at
+/// most every 50 ms. A result other than 0 ends the call with ENMM_INTERRUPTED. The call is working on the model
+/// meanwhile: other calls with it get ENMM_BUSY, but for enmm_interrupt and enmm_destroy. `progress` is valid during
+/// the call. It must return: no longjmp, no exception.
+pub type enmm_progress_callback =
+    Option<unsafe extern "C" fn(progress: *const enmm_progress, user: *mut c_void) -> i32>;
+
 /// Outcome of a communication step.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -188,7 +257,7 @@ pub struct enmm_contact {
     pub struct_size: usize,
     /// Open, slip or lock.
     pub state: enmm_contact_state,
-    /// Joint law: its place among the names of the laws of the case in alphabetical order, from 0.
+    /// Joint law: its place among the names of the laws of the case in alphabetical order, from 0; see enmm_name.
     pub law: u32,
     /// Block of the node.
     pub node_block: u32,
@@ -218,7 +287,8 @@ pub struct enmm_event {
     pub struct_size: usize,
     /// Kind of the event.
     pub kind: enmm_event_kind,
-    /// Block id; for a slip the number of the joint trace, or ENMM_NO_JOINT; of two blocks that overlap the lower id.
+    /// Block id; for a slip or a broken bond the number of the joint trace, or ENMM_NO_JOINT; of two blocks that
+    /// overlap the lower id. enmm_name has the names.
     pub subject: u32,
     /// End of the internal step in which it happened (s), as enmm_get_time counts.
     pub time: f64,
@@ -233,6 +303,12 @@ pub struct enmm_event {
 sized! {
     enmm_step_info 64 {
         struct_size time steps dt event_count first_event halved unsettled
+    }
+    enmm_start_info 40 {
+        struct_size started settled failed reserved steps unbalanced
+    }
+    enmm_progress 40 {
+        struct_size time end unbalanced is_equilibrium reserved
     }
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress

@@ -58,6 +58,11 @@ fn threads_with_their_own_models_give_the_bits_of_one_after_the_other() {
 }
 
 #[test]
+fn a_call_ends_when_another_thread_or_its_callback_wants_it_to() {
+    say(&succeed(Command::new(host("ffi/capi/tests/c/interrupt.c")).arg(SMALL)));
+}
+
+#[test]
 fn a_forked_process_goes_on_with_threads_of_its_own() {
     succeed(&mut Command::new(host("ffi/capi/tests/c/fork.c")));
 }

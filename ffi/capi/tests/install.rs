@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use crate::support::{SMALL, compiler, has, root, succeed};
+use crate::support::{SMALL, compiler, has, root, run, succeed};
 
 const PROJECT: &str = "
 cmake_minimum_required(VERSION 3.10)
@@ -50,6 +50,10 @@ fn everything_is_in_its_place() {
     let files = [
         "bin/enmm",
         "lib/libenmm.so",
+        concat!("lib/libenmm.so.", env!("CARGO_PKG_VERSION_MAJOR")),
+        concat!("lib/libenmm.so.", env!("CARGO_PKG_VERSION")),
+        "lib/libenmm_fmi2.so",
+        "lib/libenmm_fmi3.so",
         "lib/libenmm.a",
         "include/enmm.h",
         "include/enmm.hpp",
@@ -60,6 +64,21 @@ fn everything_is_in_its_place() {
     let absent: Vec<_> = files.into_iter().filter(|file| !prefix().join(file).is_file()).collect();
     assert!(absent.is_empty(), "{absent:?}");
     succeed(Command::new(prefix().join("bin/enmm")).arg("--version"));
+}
+
+#[test]
+fn a_linked_program_looks_for_the_library_of_its_series() {
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("checks-of-a-series");
+    let (source, folder) = ("ffi/capi/tests/c/checks.c", prefix().join("lib"));
+    succeed(compiler(source).arg(source).arg("-o").arg(&program).arg("-L").arg(&folder).args(["-lenmm", "-lm"]));
+    let series = concat!("libenmm.so.", env!("CARGO_PKG_VERSION_MAJOR"));
+    let alone = empty("library-of-a-series");
+    std::fs::create_dir_all(&alone).expect("a directory");
+    std::fs::copy(folder.join(series), alone.join(series)).expect("a library of that name");
+    let run = |folder: &Path| run(Command::new(&program).arg(SMALL).env("LD_LIBRARY_PATH", folder)).status;
+    assert!(run(&alone).success());
+    std::fs::rename(alone.join(series), alone.join("libenmm.so")).expect("another name");
+    assert!(!run(&alone).success(), "the program has loaded a library of any series");
 }
 
 #[test]

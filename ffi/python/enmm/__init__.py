@@ -33,12 +33,14 @@ from ._abi import (
     Input,
     Interpolation,
     LogLevel,
+    NameKind,
     PortKind,
 )
 from ._case import Case
 from ._errors import (
     BufferTooSmallError,
     BusyError,
+    CallInterruptedError,
     CaseError,
     CaseFileError,
     DeadHandleError,
@@ -61,8 +63,8 @@ from ._ports import Port, Ports
 from ._program import program
 from ._table import Table
 from ._tasks import Fos, Result, RunError, bound, check, fos, run
-from ._types import Event, Inputs, PortInputs
-from ._values import BLOCK_FIELDS, Energies, PortState, StepInfo, Totals
+from ._types import EquilibriumWarning, Event, Inputs, PortInputs
+from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
 
 __version__ = "0.1.0"
 
@@ -81,6 +83,7 @@ __all__ = [
     "BlockFlag",
     "BufferTooSmallError",
     "BusyError",
+    "CallInterruptedError",
     "Case",
     "CaseError",
     "CaseFileError",
@@ -88,6 +91,7 @@ __all__ = [
     "DeadHandleError",
     "Energies",
     "EnmmError",
+    "EquilibriumWarning",
     "Event",
     "EventKind",
     "Fos",
@@ -101,6 +105,8 @@ __all__ = [
     "LibraryError",
     "LogLevel",
     "Model",
+    "MonitorState",
+    "NameKind",
     "NotFoundError",
     "NullArgumentError",
     "PanicError",
@@ -111,8 +117,10 @@ __all__ = [
     "PortKind",
     "PortState",
     "Ports",
+    "Progress",
     "Result",
     "RunError",
+    "StartInfo",
     "State",
     "StateError",
     "Status",

@@ -108,6 +108,39 @@ class LogLevel(IntEnum):
     """Other events, and the end of the search for the initial equilibrium."""
 
 
+class NameKind(IntEnum):
+    """What has a number and a name."""
+
+    JOINT = 0
+    """A joint trace, which events name by its number."""
+    LAW = 1
+    """A joint law, which contacts name by its number."""
+    ROCK = 2
+    """A rock, in the alphabetical order of their names."""
+    STAGE = 3
+    """A stage, in the order of the case."""
+    BLOCK = 4
+    """A block."""
+    MONITOR = 5
+    """A place that the case names by `[[monitor]]`, in its order."""
+    PORT = 6
+    """A port, in the order of the case."""
+
+
+class StartInfo(ctypes.Structure):
+    """`enmm_start_info`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("started", c_uint32),
+        ("settled", c_uint32),
+        ("failed", c_uint32),
+        ("reserved", c_uint32),
+        ("steps", c_uint64),
+        ("unbalanced", c_double),
+    ]
+
+
 class StepInfo(ctypes.Structure):
     """`enmm_step_info`."""
 
@@ -120,6 +153,31 @@ class StepInfo(ctypes.Structure):
         ("first_event", c_size_t),
         ("halved", c_uint64),
         ("unsettled", c_uint64),
+    ]
+
+
+class Progress(ctypes.Structure):
+    """`enmm_progress`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("time", c_double),
+        ("end", c_double),
+        ("unbalanced", c_double),
+        ("is_equilibrium", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class MonitorState(ctypes.Structure):
+    """`enmm_monitor_state`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("displacement_x", c_double),
+        ("displacement_y", c_double),
+        ("velocity_x", c_double),
+        ("velocity_y", c_double),
     ]
 
 
@@ -262,7 +320,10 @@ class PortState(ctypes.Structure):
 
 
 STRUCTURES: dict[str, type[ctypes.Structure]] = {
+    "enmm_start_info": StartInfo,
     "enmm_step_info": StepInfo,
+    "enmm_progress": Progress,
+    "enmm_monitor_state": MonitorState,
     "enmm_block_state": BlockState,
     "enmm_energies": Energies,
     "enmm_totals": Totals,
@@ -279,16 +340,20 @@ OLDER_NAMES: dict[str, dict[str, str]] = {
 
 LOG_CALLBACK = ctypes.CFUNCTYPE(None, c_void_p, c_int32, c_char_p)
 """`enmm_log_callback`."""
+PROGRESS_CALLBACK = ctypes.CFUNCTYPE(c_int32, POINTER(Progress))
+"""`enmm_progress_callback` without the pointer of its host, which C passes behind and nobody reads."""
 
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_version": (c_char_p, []),
     "enmm_abi_version": (c_uint32, []),
     "enmm_last_error": (c_char_p, []),
+    "enmm_status_name": (c_char_p, [c_int32]),
     "enmm_create_from_file": (c_int32, [c_char_p, POINTER(c_void_p)]),
     "enmm_create_from_string": (c_int32, [c_char_p, c_char_p, POINTER(c_void_p)]),
     "enmm_check_case": (c_int32, [c_char_p, c_char_p]),
     "enmm_destroy": (None, [c_void_p]),
     "enmm_start": (c_int32, [c_void_p]),
+    "enmm_get_start_info": (c_int32, [c_void_p, POINTER(StartInfo)]),
     "enmm_do_step": (c_int32, [c_void_p, c_double, c_double, POINTER(StepInfo)]),
     "enmm_get_time": (c_int32, [c_void_p, POINTER(c_double)]),
     "enmm_get_internal_step": (c_int32, [c_void_p, POINTER(c_double)]),
@@ -296,6 +361,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_get_stop_time": (c_int32, [c_void_p, POINTER(c_double)]),
     "enmm_set_threads": (c_int32, [c_void_p, c_size_t]),
     "enmm_set_log_callback": (c_int32, [c_void_p, LOG_CALLBACK, c_void_p]),
+    "enmm_interrupt": (c_int32, [c_void_p]),
+    "enmm_set_progress_callback": (c_int32, [c_void_p, PROGRESS_CALLBACK, c_void_p]),
     "enmm_case_hash": (c_int32, [c_void_p, c_char_p, c_size_t, POINTER(c_size_t)]),
     "enmm_set_gravity": (c_int32, [c_void_p, c_double, c_double]),
     "enmm_set_block_force": (c_int32, [c_void_p, c_uint32, c_double, c_double, c_double]),
@@ -330,6 +397,9 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_get_parameter": (c_int32, [c_void_p, c_uint32, POINTER(c_double)]),
     "enmm_set_parameter": (c_int32, [c_void_p, c_uint32, c_double]),
     "enmm_set_parameters": (c_int32, [c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double)]),
+    "enmm_name_count": (c_int32, [c_void_p, c_int32, POINTER(c_size_t)]),
+    "enmm_name": (c_int32, [c_void_p, c_int32, c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
+    "enmm_get_monitor_state": (c_int32, [c_void_p, c_uint32, POINTER(MonitorState)]),
     "enmm_block_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
     "enmm_get_block_states": (c_int32, [c_void_p, POINTER(BlockState), c_size_t, POINTER(c_size_t)]),
     "enmm_view_block_states": (c_int32, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_size_t)]),

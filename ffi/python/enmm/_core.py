@@ -5,7 +5,8 @@ import itertools
 import operator
 import os
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from ctypes import POINTER, byref, c_double, c_size_t, c_void_p
 from typing import Any, SupportsFloat, SupportsIndex
 
@@ -16,8 +17,10 @@ from . import _abi
 from ._abi import LogLevel
 from ._errors import BufferTooSmallError, invalid
 from ._library import Library
+from ._values import Progress
 
 LogFunction = Callable[[LogLevel, str], object]
+ProgressFunction = Callable[[Progress], object]
 
 
 def dtype_of(structure: type[ctypes.Structure]) -> np.dtype[np.void]:
@@ -84,6 +87,36 @@ def _deliver(user: int | None, level: int, message: bytes | None) -> None:
         sink.library.keep_raised(error)
 
 
+def _show(core: "Core | None", raw: _abi.Progress) -> None:
+    if core is not None and core.progress is not None:
+        core.progress(Progress(*(getattr(raw, name) for name in Progress._fields)))
+
+
+def _keep(core: "Core | None", error: BaseException) -> None:
+    if core is not None:
+        core.library.keep_raised(error)
+
+
+def _looks(reference: "weakref.ref[Core]") -> Generator[int, Any, None]:
+    """Shows calls in progress to their host, one by each `send`; yields 1 where the call is to end.
+
+    It is a generator because the interpreter handles signals where Python code is entered: the KeyboardInterrupt of
+    Ctrl+C comes out of the `yield`, where it is caught. From a function it would come before any `try`, and be lost.
+    """
+    answer = 0
+    while True:
+        try:
+            while True:
+                place = yield answer
+                answer = 0
+                _show(reference(), place.contents)
+        except GeneratorExit:
+            return
+        except BaseException as error:  # Nothing may leave through C; the call that this belongs to raises it.
+            answer = 1
+            _keep(reference(), error)
+
+
 # One for the whole process, so that it is there as long as any library may call it.
 _deliver_from_c = _abi.LOG_CALLBACK(_deliver)
 _nowhere = _abi.LOG_CALLBACK()
@@ -99,10 +132,24 @@ class Core:
         self.handle = handle
         self.close = weakref.finalize(self, library.functions["enmm_destroy"], handle)
         self._sink: Sink | None = None
+        self.progress: ProgressFunction | None = None
+        looks = _looks(weakref.ref(self))
+        next(looks)
+        self._look = _abi.PROGRESS_CALLBACK(looks.send)
+        self.call("enmm_set_progress_callback", self._look, None)
 
     def call(self, name: str, *arguments: Any) -> None:
         """Calls a function with the handle of the model before its arguments."""
         self.library.call(name, self.handle, *arguments)
+
+    @contextmanager
+    def watched(self, progress: ProgressFunction | None) -> Iterator[None]:
+        """Shows calls within it to a function; one that a function calls has its own."""
+        outer, self.progress = self.progress, progress
+        try:
+            yield
+        finally:
+            self.progress = outer
 
     def get(self, name: str, kind: Any, *arguments: Any) -> Any:
         """A number that a function writes behind its last pointer."""

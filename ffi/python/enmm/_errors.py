@@ -19,6 +19,7 @@ class Status(IntEnum):
     NOT_FOUND = 10
     WRONG_STATE = 11
     PANIC = 12
+    INTERRUPTED = 13
 
 
 class LibraryError(OSError):
@@ -93,6 +94,10 @@ class PanicError(EnmmError):
     """An internal error of the library; the model can only be closed, all others are unharmed."""
 
 
+class CallInterruptedError(EnmmError):
+    """The call was ended by `Model.interrupt` or by its progress function; the model is as it was before the call."""
+
+
 _CLASSES: dict[int, type[EnmmError]] = {
     Status.NULL_ARGUMENT: NullArgumentError,
     Status.DEAD_HANDLE: DeadHandleError,
@@ -106,6 +111,7 @@ _CLASSES: dict[int, type[EnmmError]] = {
     Status.NOT_FOUND: NotFoundError,
     Status.WRONG_STATE: StateError,
     Status.PANIC: PanicError,
+    Status.INTERRUPTED: CallInterruptedError,
 }
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _abi
-from ._errors import LibraryError, error_of
+from ._errors import LibraryError, Status, error_of
 
 _VARIABLE = "ENMM_LIBRARY"
 _REMEDY = (
@@ -57,7 +57,7 @@ class Library:
         """Calls a function that returns a status.
 
         A failure is raised with the message of this thread. An exception that a callback raised meanwhile is raised
-        when the call itself is done; with a failure it is the cause.
+        when the call itself is done, or has been interrupted by it; with another failure it is the cause.
         """
         self.judge(*self.attempt(name, *arguments))
 
@@ -77,10 +77,10 @@ class Library:
     @staticmethod
     def judge(status: int, message: str, raised: BaseException | None) -> None:
         """Raises what came of a call."""
+        if raised is not None and status in (Status.OK, Status.INTERRUPTED):
+            raise raised
         if status:
             raise error_of(status, message) from raised
-        if raised is not None:
-            raise raised
 
     def keep_raised(self, error: BaseException) -> None:
         """Keeps an exception of a callback for the call that it was made in."""

@@ -2,8 +2,10 @@
 
 import ctypes
 import os
+import warnings
 import weakref
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 from typing import NamedTuple, Self, SupportsIndex
@@ -12,15 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._abi import EventKind, Input, Interpolation
+from ._abi import EventKind, Input, Interpolation, NameKind
 from ._closing import Closing
-from ._core import Core, LogFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
-from ._errors import BusyError, DeadHandleError, Status, invalid
+from ._core import Core, LogFunction, ProgressFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
+from ._errors import BusyError, DeadHandleError, NotFoundError, Status, invalid
 from ._library import Library, load_library
 from ._parameters import Parameters
 from ._ports import Port, Ports
-from ._types import Event, Inputs, PortInputs
-from ._values import Energies, StepInfo, Totals
+from ._types import EquilibriumWarning, Event, Inputs, PortInputs
+from ._values import Energies, MonitorState, StartInfo, StepInfo, Totals
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
 """Fields of `Model.blocks`, those of `enmm_block_state`."""
@@ -118,6 +120,8 @@ class Model(Closing):
         self._threads = 1
         self._ports = Ports(core)
         self._parameters = Parameters(core)
+        self._is_started = False
+        self._names: dict[NameKind, tuple[str, ...]] = {}
 
     @classmethod
     def from_file(
@@ -168,15 +172,43 @@ class Model(Closing):
 
     # Time.
 
-    def start(self) -> None:
+    def start(self, *, progress: ProgressFunction | None = None) -> StartInfo:
         """Seeks the initial equilibrium now, under the inputs that have been set.
 
         This runs the static stages before the first dynamic one; otherwise the first `do_step` does. Does nothing when
-        it has been done. Time 0 is its end. Raises StepError, or CaseError when a stage does not fit the model.
-        """
-        self._core.call("enmm_start")
+        it has been done. Time 0 is its end. Raises StepError, CaseError when a stage does not fit the model, or what
+        ends the call early; see `do_step`.
 
-    def do_step(self, t: float, h: float) -> StepInfo:
+        Warns by EquilibriumWarning when the model did not come to rest or the slope failed on the way, which is no
+        error; so does the first `do_step` where it seeks the equilibrium.
+        """
+        with self._core.watched(progress), self._seeking():
+            self._core.call("enmm_start")
+        return self.start_info()
+
+    def start_info(self) -> StartInfo:
+        """How the search for the initial equilibrium ended."""
+        raw = self._core.read("enmm_get_start_info", _abi.StartInfo)
+        return StartInfo(*(getattr(raw, name) for name in StartInfo._fields))
+
+    @contextmanager
+    def _seeking(self) -> Iterator[None]:
+        """Warns of an equilibrium that a call within it seeks and does not reach."""
+        if self._is_started or self.start_info().started:
+            self._is_started = True
+            yield
+            return
+        yield
+        info = self.start_info()
+        self._is_started = bool(info.started)
+        if not info.settled:
+            text = f"the model is not at rest at time 0 (unbalanced ratio {info.unbalanced:.2e})"
+            remedy = "the slope moves, or its static stage needs a longer duration"
+            warnings.warn(f"{text}: {remedy}", EquilibriumWarning, stacklevel=4)
+        elif info.failed:
+            warnings.warn("the slope has failed in the initial equilibrium", EquilibriumWarning, stacklevel=4)
+
+    def do_step(self, t: float, h: float, *, progress: ProgressFunction | None = None) -> StepInfo:
         """Advances the model from `t` to exactly `t + h` (s), or not at all.
 
         `t` must be the time of the model. How a time is split into communication steps does not change results, not
@@ -185,9 +217,22 @@ class Model(Closing):
 
         Raises TimeError; InvalidArgumentError when `h` is not greater than 0 and finite; StepError with block, place
         and cause. The model then still is at `t`, with its inputs.
+
+        `progress` gets a Progress at most every 50 ms, on the thread of the call; other calls to the model raise
+        BusyError there. An exception that it raises, and the KeyboardInterrupt of Ctrl+C in the main thread, end the
+        call within 50 ms, or an internal step if that takes longer, and so does `interrupt` with CallInterruptedError;
+        the model then is as it was before the call.
         """
-        raw = self._core.read("enmm_do_step", _abi.StepInfo, number(t), number(h))
+        with self._core.watched(progress), self._seeking():
+            raw = self._core.read("enmm_do_step", _abi.StepInfo, number(t), number(h))
         return StepInfo(*(getattr(raw, name) for name in StepInfo._fields))
+
+    def interrupt(self) -> None:
+        """Ends the `start` or `do_step` that is in progress in another thread, which raises CallInterruptedError.
+
+        Without such a call it does nothing: a call forgets what came before it.
+        """
+        self._core.call("enmm_interrupt")
 
     @property
     def time(self) -> float:
@@ -413,9 +458,44 @@ class Model(Closing):
         columns = (rows[name].tolist() for name in ("kind", "subject", "time", "other", "depth"))
         none = {_abi.NO_JOINT: None, _abi.NO_BLOCK: None}
         return [
-            Event(EventKind(kind), none.get(of, of), time, none.get(other, other), depth)
+            Event(EventKind(kind), none.get(of, of), time, none.get(other, other), depth, self._name_of(kind, of))
             for kind, of, time, other, depth in zip(*columns, strict=True)
         ]
+
+    def _name_of(self, kind: int, subject: int) -> str | None:
+        """Name of the subject of an event."""
+        if subject == _abi.NO_JOINT:
+            return None
+        of_joints = kind in (EventKind.SLIPPED, EventKind.BROKEN)
+        return self.names(NameKind.JOINT if of_joints else NameKind.BLOCK)[subject]
+
+    def names(self, kind: NameKind) -> tuple[str, ...]:
+        """Names of all things of a kind, by their numbers. They never change.
+
+        What the case does not name has a stand-in: "joint[2]" is a joint of the case by its place there,
+        "bedding trace 4" (or "joint_set[1] trace 4") a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9"
+        any other joint trace, which a region of another law has parted or which surrounds an island, and "block 3" a
+        block.
+        """
+        kind = NameKind(kind)
+        if kind not in self._names:
+            count = self._core.get("enmm_name_count", c_size_t, kind)
+            self._names[kind] = tuple(self._core.text("enmm_name", kind, k) for k in range(count))
+        return self._names[kind]
+
+    def monitor(self, monitor: str | SupportsIndex) -> MonitorState:
+        """State of a monitor of the case, by its name or its place there. Raises NotFoundError for another name."""
+        of = self._named(NameKind.MONITOR, monitor) if isinstance(monitor, str) else index("monitor", monitor)
+        raw = self._core.read("enmm_get_monitor_state", _abi.MonitorState, of)
+        return MonitorState(*(getattr(raw, name) for name in MonitorState._fields))
+
+    def _named(self, kind: NameKind, name: str) -> int:
+        names = self.names(kind)
+        if name not in names:
+            word = kind.name.lower()
+            known = ", ".join(names) or "none"
+            raise NotFoundError(f"no {word} is named {name!r}; {word}s of the case: {known}", Status.NOT_FOUND)
+        return names.index(name)
 
     def energies(self) -> Energies:
         """Energies now and works since the start."""
@@ -462,6 +542,7 @@ class Model(Closing):
         case; the model then stays as it is.
         """
         self._core.call("enmm_state_restore_with", state.handle, _abi.KEEP_PARAMETERS if keep_parameters else 0)
+        self._is_started = False
 
     def serialize(self, state: State | None = None) -> bytes:
         """A state, without one that of now, as bytes for a file or another process.

@@ -5,6 +5,10 @@ from typing import NamedTuple
 from ._abi import EventKind
 
 
+class EquilibriumWarning(UserWarning):
+    """The model was not at rest at the end of its initial equilibrium, or the slope failed in it."""
+
+
 class Event(NamedTuple):
     """Something that happened for the first time."""
 
@@ -21,6 +25,8 @@ class Event(NamedTuple):
     """Higher id of two blocks that overlap; None for events of other kinds."""
     depth: float = 0.0
     """Depth of an overlap when it was found (m); 0 for events of other kinds."""
+    name: str | None = None
+    """Name of the joint or block, as `Model.names` gives it; None for a contact that lies on no joint."""
 
 
 class Inputs(NamedTuple):

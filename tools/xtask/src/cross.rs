@@ -7,6 +7,7 @@ use crate::bits;
 use crate::counts::Counts;
 use crate::debian;
 use crate::emulator::Emulator;
+use crate::install;
 use crate::platform::{Cross, Platform};
 use crate::repository::succeeds;
 use crate::repository::{self, Repository};
@@ -62,6 +63,7 @@ pub fn quick(repository: &Repository, platform: &Platform) -> Result<Counts, Str
         .binaries()
         .iter()
         .try_for_each(|name| platform.strip(repository, &built.join(name), &shipped.join(name)))?;
+    install::link_series(platform, &shipped)?;
     place.c_library()?;
     bits::elsewhere(repository, platform, &place.emulator, &place.compile(FMU_HOST, &[])?)
 }
@@ -98,6 +100,7 @@ fn build(repository: &Repository, platform: &Platform, cross: &Cross) -> Result<
     };
     cross.import_library.map_or(Ok(()), |name| copy(&platform.built(repository).join(name)))?;
     copy(&repository.root.join(HEADER))?;
+    install::link_series(platform, &shipped)?;
     for (name, bytes) in repository::files_of(&shipped)? {
         println!("{:>6.1} MB  {}", bytes.len() as f64 / 1e6, shipped.join(name).display());
     }

@@ -2,7 +2,7 @@
 
 use libc::c_char;
 
-use crate::safe::failure::last_message;
+use crate::safe::failure::{last_message, status_name};
 use crate::types::ENMM_ABI_VERSION;
 
 /// Version of the library, such as "0.1.0". The text is never freed.
@@ -19,8 +19,17 @@ pub extern "C" fn enmm_abi_version() -> u32 {
 }
 
 /// Message of the last call that failed on the calling thread: fault, value, limit and remedy. It is empty when none
-/// has failed, and valid until the next one fails on this thread or the thread ends.
+/// has failed.
+///
+/// The address is the same for all calls of a thread and valid until the thread ends; the next call that fails there
+/// replaces the text. A message of more than 4095 bytes ends with "...".
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_last_error() -> *const c_char {
     last_message()
+}
+
+/// Name of a status, such as "ENMM_BUSY"; "unknown status" for a number that is none. The text is never freed.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_status_name(status: i32) -> *const c_char {
+    status_name(status).as_ptr().cast()
 }

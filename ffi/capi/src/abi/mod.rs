@@ -3,6 +3,7 @@
 pub mod inputs;
 pub mod library;
 pub mod model;
+pub mod names;
 pub mod observe;
 pub mod parameters;
 mod pointers;

@@ -6,9 +6,13 @@ use std::sync::Arc;
 use libc::{c_char, c_void};
 
 use super::pointers;
+use crate::safe::control::Progress;
 use crate::safe::enter::{guard, with_model};
 use crate::safe::model::{self, MODELS, Sink};
-use crate::types::{enmm_log_callback, enmm_log_level, enmm_model, enmm_status, enmm_step_info};
+use crate::types::{
+    enmm_log_callback, enmm_log_level, enmm_model, enmm_progress, enmm_progress_callback, enmm_start_info, enmm_status,
+    enmm_step_info,
+};
 
 /// Builds the model of a case file. Nothing moves yet.
 ///
@@ -95,12 +99,26 @@ pub extern "C" fn enmm_destroy(model: *mut enmm_model) {
 
 /// Computes the initial equilibrium with the inputs that have been set: runs the static stages before the first dynamic
 /// one. Without this call the first enmm_do_step does so. A second call does nothing. Time 0 is the end of the
-/// equilibrium.
+/// equilibrium. enmm_get_start_info says whether the model came to rest.
 ///
-/// Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model.
+/// Errors: ENMM_NUMERICAL_FAILURE; ENMM_INVALID_CASE when a stage does not fit the model; ENMM_INTERRUPTED.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
     with_model(model.addr(), |model| model.start())
+}
+
+/// Writes how the search for the initial equilibrium ended. `info->struct_size` must be set.
+///
+/// A model that did not come to rest is no error: enmm_start and enmm_do_step return ENMM_OK, and the log warns.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a struct_size that no version had, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_start_info(model: *mut enmm_model, info: *mut enmm_start_info) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.start_info(), info) })
 }
 
 /// Advances the model from `t` to exactly `t + h` (s), or not at all.
@@ -111,8 +129,8 @@ pub extern "C" fn enmm_start(model: *mut enmm_model) -> enmm_status {
 /// the last stage of the case continues. `info` may be NULL; otherwise its `struct_size` must be set.
 ///
 /// Errors: ENMM_WRONG_TIME; ENMM_INVALID_ARGUMENT when `h` is not greater than 0 and finite; ENMM_NUMERICAL_FAILURE
-/// with block, position and cause. The model is then the same as before, to the bit. Without enmm_start the first step
-/// also computes the initial equilibrium, and discards it when the step fails.
+/// with block, position and cause; ENMM_INTERRUPTED. The model is then the same as before, to the bit. Without
+/// enmm_start the first step also computes the initial equilibrium, and discards it when the step fails.
 ///
 /// # Safety
 /// Every pointer is as the head of the header states.
@@ -218,18 +236,20 @@ pub unsafe extern "C" fn enmm_set_log_callback(
     })
 }
 
-fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_char), user: *mut c_void) -> Sink {
-    /// The pointer of a host, which is only handed back.
-    struct User(*mut c_void);
-    // SAFETY: nothing is read or written through it here; the header says on which threads it gets it back.
-    unsafe impl Send for User {}
-    // SAFETY: as above.
-    unsafe impl Sync for User {}
-    impl User {
-        fn get(&self) -> *mut c_void {
-            self.0
-        }
+/// The pointer of a host, which is only handed back.
+struct User(*mut c_void);
+// SAFETY: nothing is read or written through it here; the header says on which threads the host gets it back.
+unsafe impl Send for User {}
+// SAFETY: as above.
+unsafe impl Sync for User {}
+
+impl User {
+    fn get(&self) -> *mut c_void {
+        self.0
     }
+}
+
+fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_char), user: *mut c_void) -> Sink {
     let user = User(user);
     Arc::new(move |level, message| {
         let text = CString::new(message.replace('\0', "?")).unwrap_or_default();
@@ -237,6 +257,50 @@ fn sink(callback: unsafe extern "C" fn(*mut c_void, enmm_log_level, *const c_cha
         // when the model is destroyed until calls in other threads have returned.
         unsafe { callback(user.get(), level, text.as_ptr()) };
     })
+}
+
+/// Ends the call of enmm_start or enmm_do_step that is in progress with this model, in any thread: it returns
+/// ENMM_INTERRUPTED before its next internal step, and the model is as it was before the call, to the bit.
+///
+/// It never waits and needs no turn at the model. Without a call in progress it does nothing: a call forgets what came
+/// before it, so that an interrupt just before a call begins has no effect, and a host that cannot know repeats it
+/// until the call has returned. A call that has taken its last internal step ends as if nothing had come. It locks a
+/// table for an instant and so must not be called in a signal handler: set a flag there, and return it from the
+/// progress callback.
+///
+/// Errors: ENMM_NULL_ARGUMENT, ENMM_DEAD_HANDLE.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_interrupt(model: *mut enmm_model) -> enmm_status {
+    guard(|| {
+        MODELS.find(model.addr())?.interrupt.raise();
+        Ok(())
+    })
+}
+
+/// Sets the callback that sees the progress of calls with this model and may end them; NULL (as at creation) for none.
+///
+/// `user` is passed to the callback unchanged, and no longer used after this function has replaced the callback.
+///
+/// Errors: ENMM_BUSY when a call is in progress, as in the callback itself.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_set_progress_callback(
+    model: *mut enmm_model,
+    callback: enmm_progress_callback,
+    user: *mut c_void,
+) -> enmm_status {
+    with_model(model.addr(), |model| {
+        model.set_progress(callback.map(|callback| progress(callback, user)));
+        Ok(())
+    })
+}
+
+fn progress(callback: unsafe extern "C" fn(*const enmm_progress, *mut c_void) -> i32, user: *mut c_void) -> Progress {
+    let user = User(user);
+    // SAFETY: the host has promised that the callback can be called with its pointer until another is set.
+    Box::new(move |progress| unsafe { callback(progress, user.get()) } != 0)
 }
 
 /// Writes the fingerprint of the case: 16 hexadecimal digits, equal for equal models, and part of every serialised

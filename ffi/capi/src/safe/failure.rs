@@ -1,10 +1,8 @@
 //! Status and message of what failed, and the last message of every thread.
 
-use std::cell::RefCell;
-use std::ffi::CString;
-
 use engine::cosimulation::CosimulationError;
 use enmm_io::CaseError;
+use std::cell::RefCell;
 
 use crate::types::enmm_status;
 
@@ -59,6 +57,8 @@ impl From<CosimulationError> for Failure {
     fn from(error: CosimulationError) -> Self {
         let status = match error {
             CosimulationError::Stage(_) => enmm_status::ENMM_INVALID_CASE,
+            CosimulationError::NoPort { .. } => enmm_status::ENMM_NOT_FOUND,
+            CosimulationError::Interrupted => enmm_status::ENMM_INTERRUPTED,
             CosimulationError::Value { .. } | CosimulationError::Parameter(_) => enmm_status::ENMM_INVALID_ARGUMENT,
             CosimulationError::Time { .. } | CosimulationError::Stale => enmm_status::ENMM_WRONG_TIME,
             CosimulationError::Step(_) => enmm_status::ENMM_NUMERICAL_FAILURE,
@@ -68,25 +68,105 @@ impl From<CosimulationError> for Failure {
     }
 }
 
+/// Takes each status by its name.
+macro_rules! statuses {
+    ($($name:ident)*) => {
+        /// Name of a status with a closing zero.
+        pub fn status_name(status: i32) -> &'static str {
+            // Does not compile when a status is not listed.
+            let _ = |status| match status { $(enmm_status::$name => {})* };
+            match status {
+                $(number if number == enmm_status::$name as i32 => concat!(stringify!($name), "\0"),)*
+                _ => "unknown status\0",
+            }
+        }
+    };
+}
+
+statuses! {
+    ENMM_OK ENMM_NULL_ARGUMENT ENMM_DEAD_HANDLE ENMM_BUSY ENMM_INVALID_ARGUMENT ENMM_INVALID_CASE ENMM_FILE_ERROR
+    ENMM_WRONG_TIME ENMM_NUMERICAL_FAILURE ENMM_BUFFER_TOO_SMALL ENMM_NOT_FOUND ENMM_WRONG_STATE ENMM_PANIC
+    ENMM_INTERRUPTED
+}
+
+/// Room for a message with its closing zero (bytes).
+const ROOM: usize = 4096;
+/// End of a message that has no room.
+const CUT: &str = "...";
+
 thread_local! {
-    static LAST: RefCell<CString> = RefCell::default();
+    /// Last message of this thread, which ends with a zero. Its address does not change.
+    static LAST: RefCell<[u8; ROOM]> = const { RefCell::new([0; ROOM]) };
 }
 
 /// Keeps the message of a failure as the last one of this thread.
 pub fn remember(failure: &Failure) {
-    let text = CString::new(failure.message.replace('\0', "?")).unwrap_or_default();
-    // A thread that is being torn down has no message any more.
-    let _ = LAST.try_with(|last| last.replace(text));
+    LAST.with_borrow_mut(|last| write(&failure.message, last));
 }
 
-/// Address of the last message of this thread, or of an empty text.
+/// Writes a text with a closing zero, cut where it has no room.
+fn write(text: &str, room: &mut [u8; ROOM]) {
+    let (kept, end) = match text.len() < ROOM {
+        true => (text, ""),
+        false => (upto(text, ROOM - 1 - CUT.len()), CUT),
+    };
+    let bytes = kept.bytes().map(|byte| if byte == 0 { b'?' } else { byte }).chain(end.bytes()).chain([0]);
+    room.iter_mut().zip(bytes).for_each(|(place, byte)| *place = byte);
+}
+
+/// The letters within the first bytes of a text.
+fn upto(text: &str, bytes: usize) -> &str {
+    let end = (0..=bytes).rev().find(|&end| text.is_char_boundary(end));
+    &text[..end.unwrap_or(0)]
+}
+
+/// Address of the last message of this thread, which is empty before the first failure.
 pub fn last_message() -> *const libc::c_char {
-    LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+    LAST.with(|last| last.as_ptr().cast_const().cast())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn written(text: &str) -> String {
+        let mut room = [b'x'; ROOM];
+        write(text, &mut room);
+        let end = room.iter().position(|byte| *byte == 0).expect("a closing zero");
+        String::from_utf8(room[..end].to_vec()).expect("UTF-8")
+    }
+
+    #[test]
+    fn long_messages_are_cut_between_letters() {
+        assert_eq!(written(""), "");
+        assert_eq!(written("a\0b"), "a?b");
+        let fits = "x".repeat(ROOM - 1);
+        assert_eq!(written(&fits), fits);
+        assert_eq!(written(&"x".repeat(ROOM)), "x".repeat(ROOM - 4) + "...");
+        for before in 0..4 {
+            let long = "x".repeat(before) + &"€".repeat(ROOM);
+            let own = written(&long);
+            assert!(own.len() > ROOM - 8 && long.starts_with(own.strip_suffix("...").expect("cut")), "{before}");
+        }
+    }
+
+    #[test]
+    fn the_address_of_the_last_message_does_not_change() {
+        let before = last_message();
+        remember(&Failure::invalid("first"));
+        remember(&Failure::invalid("second, and longer"));
+        assert_eq!(last_message(), before);
+        assert_ne!(std::thread::spawn(|| last_message().addr()).join().expect("a thread"), before.addr());
+    }
+
+    #[test]
+    fn statuses_have_the_names_of_the_header() {
+        let name = |status: enmm_status| status_name(status as i32).trim_end_matches('\0').to_owned();
+        for status in [enmm_status::ENMM_OK, enmm_status::ENMM_BUSY, enmm_status::ENMM_PANIC] {
+            assert_eq!(name(status), format!("{status:?}"));
+        }
+        assert_eq!([status_name(-1), status_name(99)], ["unknown status\0"; 2]);
+    }
 
     #[test]
     fn panics_tell_their_message() {

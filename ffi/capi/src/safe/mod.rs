@@ -1,11 +1,13 @@
 //! Everything behind the entry points that needs no pointer.
 #![forbid(unsafe_code)]
 
+pub mod control;
 pub mod enter;
 pub mod failure;
 pub mod handles;
 pub mod inputs;
 pub mod model;
+pub mod names;
 pub mod observe;
 pub mod parameters;
 pub mod state;

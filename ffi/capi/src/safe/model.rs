@@ -4,15 +4,16 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use engine::cosimulation::{Cosimulation, Event, EventKind, Interpolation, StepInfo};
+use engine::cosimulation::{Cosimulation, CosimulationError, Event, EventKind, Interpolation, StepInfo};
 use engine::model::SlopeFailure;
 use enmm_io::{LoadedCase, load_case, parse_case};
 
+use super::control::{Interrupt, Progress};
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
 use super::inputs::interpolation;
 use crate::numbers::enmm_block_state;
-use crate::types::{enmm_interpolation, enmm_log_level, enmm_status, enmm_step_info};
+use crate::types::{enmm_interpolation, enmm_log_level, enmm_start_info, enmm_status, enmm_step_info};
 
 /// Models that are alive.
 pub static MODELS: Table<Shared> = Table::new(0x10, "model");
@@ -25,6 +26,8 @@ pub struct Shared {
     model: Mutex<Model>,
     /// Thread that is in a call, messages of the call included; 0 for none.
     owner: AtomicUsize,
+    /// Wish that the call ends, beside the model, so that it needs no turn.
+    pub interrupt: Interrupt,
 }
 
 /// The right of one thread to a model. The outermost call of the thread gives it back.
@@ -44,8 +47,7 @@ fn this_thread() -> usize {
     HERE.with(|here| std::ptr::from_ref(here).addr())
 }
 
-fn busy() -> Failure {
-    let message = "another thread is using this model; let one thread at a time use it";
+fn busy(message: &str) -> Failure {
     Failure::new(enmm_status::ENMM_BUSY, message)
 }
 
@@ -59,7 +61,7 @@ impl Shared {
         match self.owner.compare_exchange(0, here, Ordering::Acquire, Ordering::Relaxed) {
             Ok(_) => Ok(Turn(Some(&self.owner))),
             Err(owner) if owner == here => Ok(Turn(None)),
-            Err(_) => Err(busy()),
+            Err(_) => Err(busy("another thread is using this model; let one thread at a time use it")),
         }
     }
 
@@ -69,7 +71,9 @@ impl Shared {
     /// A call is working on it, or a panic has left it broken.
     pub fn lock(&self) -> Result<MutexGuard<'_, Model>, Failure> {
         self.model.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => busy(),
+            TryLockError::WouldBlock => {
+                busy("a call of this thread is working on this model; use it when that call has returned")
+            }
             TryLockError::Poisoned(_) => {
                 let message = "an internal error has broken this model; destroy it, and create it anew";
                 Failure::new(enmm_status::ENMM_PANIC, message)
@@ -86,6 +90,9 @@ pub struct Model {
     warnings: Vec<String>,
     /// States of the blocks that the host looks at in place.
     pub(super) viewed: Vec<enmm_block_state>,
+    interrupt: Interrupt,
+    /// Whether the slope had failed at the end of the last search for the initial equilibrium.
+    has_failed_at_start: bool,
 }
 
 /// Messages of one call, and where they go.
@@ -144,10 +151,19 @@ pub fn check_case(toml: &str, base_dir: &str) -> Result<(), Failure> {
 }
 
 fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
-    let inner = loaded.cosimulation()?;
+    let mut inner = loaded.cosimulation()?;
+    let interrupt = Interrupt::default();
+    inner.set_watch(Some(interrupt.watch(None)));
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
-    let model = Model { inner, log: Log::default(), warnings, viewed: Vec::new() };
-    MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0) })
+    let model = Model {
+        inner,
+        log: Log::default(),
+        warnings,
+        viewed: Vec::new(),
+        interrupt: interrupt.clone(),
+        has_failed_at_start: false,
+    };
+    MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0), interrupt })
 }
 
 impl Model {
@@ -161,6 +177,11 @@ impl Model {
         }
     }
 
+    /// Sets or takes away what sees the progress of calls.
+    pub fn set_progress(&mut self, progress: Option<Progress>) {
+        self.inner.set_watch(Some(self.interrupt.watch(progress)));
+    }
+
     /// Messages that have come together.
     pub fn take_mail(&mut self) -> Mail {
         Mail(std::mem::take(&mut self.log.pending_messages))
@@ -169,28 +190,45 @@ impl Model {
     /// Seeks the initial equilibrium.
     ///
     /// # Errors
-    /// A numerical failure.
+    /// A numerical failure, or an interrupt.
     pub fn start(&mut self) -> Outcome {
+        self.interrupt.clear();
         let was_started = self.inner.is_started();
         let result = self.inner.start().map_err(Failure::from);
+        self.note_start(was_started);
         if let Err(failure) = &result {
-            self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone());
+            self.log_failure(failure);
         }
         self.log_start(was_started);
         result
     }
 
+    /// How the search for the initial equilibrium ended.
+    pub fn start_info(&self) -> enmm_start_info {
+        let (is_started, unbalanced) = (self.inner.is_started(), self.inner.initial_residual());
+        enmm_start_info {
+            struct_size: size_of::<enmm_start_info>(),
+            started: u32::from(is_started),
+            settled: u32::from(is_started && unbalanced.is_none()),
+            failed: u32::from(is_started && self.has_failed_at_start),
+            reserved: 0,
+            steps: self.inner.initial_steps(),
+            unbalanced: unbalanced.unwrap_or_default(),
+        }
+    }
+
     /// Advances from `t` over `h`.
     ///
     /// # Errors
-    /// Times that do not fit, or a numerical failure.
+    /// Times that do not fit, a numerical failure, or an interrupt.
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<enmm_step_info, Failure> {
+        self.interrupt.clear();
         let was_started = self.inner.is_started();
-        let result = self.inner.do_step(t, h).map_err(Failure::from);
+        let result = self.cover(t, h).map_err(Failure::from);
         self.log_start(was_started);
         match &result {
             Ok(info) => self.log_step(info),
-            Err(failure) => self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone()),
+            Err(failure) => self.log_failure(failure),
         }
         let info = result?;
         Ok(enmm_step_info {
@@ -203,6 +241,31 @@ impl Model {
             halved: info.halved,
             unsettled: info.unsettled,
         })
+    }
+
+    /// Covers the interval, and looks at the initial equilibrium when the step begins with it.
+    fn cover(&mut self, t: f64, h: f64) -> Result<StepInfo, CosimulationError> {
+        let was_started = self.inner.is_started();
+        let mut interval = self.inner.begin(t, h)?;
+        self.note_start(was_started);
+        while self.inner.advance(&mut interval)? {}
+        Ok(interval.info().clone())
+    }
+
+    /// Notes whether the slope has failed in the initial equilibrium that has just been sought.
+    fn note_start(&mut self, was_started: bool) {
+        if !was_started && self.inner.is_started() {
+            self.has_failed_at_start = self.inner.failure().is_some();
+        }
+    }
+
+    /// Logs a call that failed; one that the host ended is no error.
+    fn log_failure(&mut self, failure: &Failure) {
+        let level = match failure.status {
+            enmm_status::ENMM_INTERRUPTED => enmm_log_level::ENMM_LOG_INFO,
+            _ => enmm_log_level::ENMM_LOG_ERROR,
+        };
+        self.log.write(level, || failure.message.clone());
     }
 
     /// Logs the initial equilibrium when this call has computed it.

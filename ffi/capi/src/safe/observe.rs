@@ -2,11 +2,10 @@
 
 use engine::cosimulation::{EventKind, PortKind};
 use engine::geometry::{Point, polygon};
-use engine::model::case::key::list;
 use engine::model::tables::BlockId;
 use engine::model::{ContactState, ContactView};
 
-use super::failure::{Failure, Outcome};
+use super::failure::Failure;
 use super::model::Model;
 use crate::numbers::*;
 use crate::types::*;
@@ -144,13 +143,7 @@ impl Model {
     /// # Errors
     /// No port has the name.
     pub fn find_port(&self, name: &str) -> Result<u32, Failure> {
-        let ports = self.inner.ports();
-        let found = ports.iter().position(|port| port.name == name);
-        found.map(|k| k as u32).ok_or_else(|| {
-            let names = list(ports.iter().map(|port| port.name.as_str()));
-            let message = format!("no port is named {name:?}; ports of the case: {names}");
-            Failure::new(enmm_status::ENMM_NOT_FOUND, message)
-        })
+        Ok(self.inner.find_port(name)? as u32)
     }
 
     /// Name of a port.
@@ -158,8 +151,7 @@ impl Model {
     /// # Errors
     /// No such port.
     pub fn port_name(&self, port: u32) -> Result<&str, Failure> {
-        self.check_port(port)?;
-        Ok(&self.inner.ports()[port as usize].name)
+        Ok(&self.inner.port(port as usize)?.name)
     }
 
     /// Kind of a port.
@@ -167,8 +159,7 @@ impl Model {
     /// # Errors
     /// No such port.
     pub fn port_kind(&self, port: u32) -> Result<enmm_port_type, Failure> {
-        self.check_port(port)?;
-        Ok(match self.inner.ports()[port as usize].kind {
+        Ok(match self.inner.port(port as usize)?.kind {
             PortKind::Block => enmm_port_type::ENMM_PORT_BLOCK,
             PortKind::Boundary => enmm_port_type::ENMM_PORT_BOUNDARY,
             PortKind::Joint => enmm_port_type::ENMM_PORT_JOINT,
@@ -182,8 +173,7 @@ impl Model {
     /// # Errors
     /// No such port.
     pub fn port_block(&self, port: u32) -> Result<u32, Failure> {
-        self.check_port(port)?;
-        Ok(self.inner.ports()[port as usize].block.number())
+        Ok(self.inner.port_block(port as usize)?)
     }
 
     /// State of a port.
@@ -191,16 +181,8 @@ impl Model {
     /// # Errors
     /// No such port.
     pub fn port_state(&self, port: u32) -> Result<enmm_port_state, Failure> {
-        self.check_port(port)?;
-        Ok(enmm_port_state::from(&self.inner.port_state(port as usize)))
-    }
-
-    fn check_port(&self, port: u32) -> Outcome {
-        let count = self.inner.ports().len();
-        if (port as usize) < count {
-            return Ok(());
-        }
-        let remedy = "name the place by `[[port]]` in the case";
-        Err(Failure::invalid(format!("port: is {port}, must be less than the number of ports, {count}; {remedy}")))
+        let port = port as usize;
+        self.inner.port(port)?;
+        Ok(enmm_port_state::from(&self.inner.port_state(port)))
     }
 }

@@ -144,16 +144,72 @@ static void ports(enmm_model *model)
     CHECK(enmm_set_joint_pressure(model, 2, NAN) == ENMM_INVALID_ARGUMENT);
 }
 
+static void names(enmm_model *model)
+{
+    static const char *first[] = {"joint[0]", "joint", "rock", "settle", "block 0", "corner", "block"};
+    static const size_t counts[] = {1, 1, 1, 2, COUNT, 1, 3};
+    enmm_monitor_state corner;
+    size_t count = 0, written = 0;
+    char name[16];
+    for (int32_t kind = ENMM_NAME_JOINT; kind <= ENMM_NAME_PORT; kind++) {
+        OK(enmm_name_count(model, kind, &count));
+        CHECK(count == counts[kind]);
+        OK(enmm_name(model, kind, 0, NULL, 0, &written));
+        CHECK(written == strlen(first[kind]) + 1);
+        OK(enmm_name(model, kind, 0, name, sizeof name, &written));
+        CHECK(strcmp(name, first[kind]) == 0);
+        CHECK(enmm_name(model, kind, 0, name, 2, &written) == ENMM_BUFFER_TOO_SMALL);
+        CHECK(enmm_name(model, kind, (uint32_t)count, name, sizeof name, &written) == ENMM_INVALID_ARGUMENT);
+        CHECK(strstr(enmm_last_error(), "less than the number of") != NULL);
+    }
+    CHECK(enmm_name_count(model, 7, &count) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_name(model, -1, 0, name, sizeof name, &written) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_name_count(model, ENMM_NAME_LAW, NULL) == ENMM_NULL_ARGUMENT);
+    CHECK(enmm_name_count(NULL, ENMM_NAME_LAW, &count) == ENMM_NULL_ARGUMENT);
+    memset(&corner, 0x55, sizeof corner);
+    CHECK(enmm_get_monitor_state(model, 0, &corner) == ENMM_INVALID_ARGUMENT);
+    corner.struct_size = sizeof corner;
+    OK(enmm_get_monitor_state(model, 0, &corner));
+    CHECK(corner.displacement_y < 0 && corner.displacement_y > -1e-3 && fabs(corner.velocity_x) < 1);
+    CHECK(enmm_get_monitor_state(model, 1, &corner) == ENMM_INVALID_ARGUMENT);
+}
+
+/* The message stands at one address, which holds whatever is evaluated first. */
+static void messages(enmm_model *model)
+{
+    const char *address = enmm_last_error();
+    char *name = malloc(9001);
+    uint32_t port;
+    CHECK(enmm_set_gravity(model, NAN, 0) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_last_error() == address && strncmp(address, "gravity, x", 10) == 0);
+    memset(name, 'x', 9000);
+    name[9000] = 0;
+    CHECK(enmm_find_port(model, name, &port) == ENMM_NOT_FOUND);
+    CHECK(enmm_last_error() == address && strlen(address) == 4095 && strcmp(address + 4092, "...") == 0);
+    free(name);
+    CHECK(strcmp(enmm_status_name(ENMM_OK), "ENMM_OK") == 0);
+    CHECK(strcmp(enmm_status_name(ENMM_WRONG_STATE), "ENMM_WRONG_STATE") == 0);
+    CHECK(strcmp(enmm_status_name(-1), "unknown status") == 0);
+}
+
 static void steps(enmm_model *model)
 {
     enmm_step_info info = {0};
+    enmm_start_info found = {0};
     double time = -1, step = 0, communication = 0, stop = 0;
     CHECK(enmm_do_step(model, 0, 0.01, &info) == ENMM_INVALID_ARGUMENT);
     OK(enmm_get_time(model, &time));
     CHECK(time == 0);
     info.struct_size = sizeof info;
+    CHECK(enmm_get_start_info(model, &found) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_get_start_info(model, NULL) == ENMM_NULL_ARGUMENT);
+    found.struct_size = sizeof found;
+    OK(enmm_get_start_info(model, &found));
+    CHECK(found.started == 0 && found.settled == 0 && found.steps == 0);
     OK(enmm_start(model));
     OK(enmm_start(model));
+    OK(enmm_get_start_info(model, &found));
+    CHECK(found.started == 1 && found.settled == 1 && found.failed == 0 && found.steps > 10 && found.unbalanced == 0);
     OK(enmm_do_step(model, 0, 0.01, &info));
     CHECK(info.time == 0.01 && info.steps >= 10 && info.struct_size == sizeof info);
     OK(enmm_get_internal_step(model, &step));
@@ -472,7 +528,9 @@ int main(int argc, char **argv)
     model = create(argv[1]);
     inputs(model);
     ports(model);
+    messages(model);
     steps(model);
+    names(model);
     blocks(model);
     shapes(model);
     sums(model);

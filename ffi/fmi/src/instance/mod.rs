@@ -228,14 +228,18 @@ impl Instance {
         Ok(())
     }
 
-    /// exitInitializationMode: builds the model anew if parameters have changed, and seeks the initial equilibrium.
+    /// exitInitializationMode: builds the model anew if parameters have changed, and seeks the initial equilibrium. A
+    /// warning when that was not reached.
     pub fn exit_initialization(&mut self) -> Status {
         let legal = self.allow(Call::ExitInitialization);
         let outcome = legal.and_then(|()| self.start_model());
         if outcome.is_ok() {
             self.phase = Phase::Step;
         }
-        self.end(outcome)
+        match self.end(outcome) {
+            Status::Ok if self.model.initial_residual().is_some() => Status::Warning,
+            status => status,
+        }
     }
 
     fn start_model(&mut self) -> Result<(), Failure> {

@@ -7,9 +7,9 @@ use std::ptr::{null, null_mut};
 use crate::parts::{Act, Outcome, finite};
 use crate::random::Random;
 use crate::trace::Trace;
-use enmm_fuzz::abi::{inputs, library, model as life, observe, state};
+use enmm_fuzz::abi::{inputs, library, model as life, names, observe, state};
 use enmm_fuzz::buffer::Buffer;
-use enmm_fuzz::numbers::{enmm_block_state, enmm_energies, enmm_port_state, enmm_totals};
+use enmm_fuzz::numbers::{enmm_block_state, enmm_energies, enmm_monitor_state, enmm_port_state, enmm_totals};
 use enmm_fuzz::types::{enmm_contact, enmm_event, enmm_model, enmm_state, enmm_status, enmm_step_info};
 
 /// A block on a slab with a port of every kind.
@@ -244,8 +244,9 @@ impl Host {
 
     /// Lists of structures, points and letters into buffers of right and wrong capacity.
     fn list(&mut self, model: Model, random: &mut Random, trace: &mut Trace) -> Call {
-        let which = random.below(7);
-        let words = [size_of::<enmm_block_state>(), size_of::<enmm_contact>(), size_of::<enmm_event>(), 16, 16, 1, 1];
+        let which = random.below(8);
+        let words =
+            [size_of::<enmm_block_state>(), size_of::<enmm_contact>(), size_of::<enmm_event>(), 16, 16, 1, 1, 1];
         let capacity = random.pick(&[0, 1, 2, 5, 200]);
         let (mut buffer, known) = match which {
             0..=2 => sized(words[which], capacity, random),
@@ -267,6 +268,7 @@ impl Host {
                 3 => ("polygon", observe::enmm_get_block_polygon(model, k, out.cast(), capacity, count)),
                 4 => ("hole", observe::enmm_get_block_hole(model, k, 0, out.cast(), capacity, count)),
                 5 => ("port name", observe::enmm_port_name(model, k, out.cast(), capacity, count)),
+                6 => ("name", names::enmm_name(model, k.cast_signed(), k, out.cast(), capacity, count)),
                 _ => ("case hash", life::enmm_case_hash(model, out.cast(), capacity, count)),
             }
         };
@@ -284,8 +286,13 @@ impl Host {
 
     /// Structures one by one.
     fn one(&mut self, model: Model, random: &mut Random, trace: &mut Trace) -> Call {
-        let which = random.below(3);
-        let sizes = [size_of::<enmm_energies>(), size_of::<enmm_totals>(), size_of::<enmm_port_state>()];
+        let which = random.below(4);
+        let sizes = [
+            size_of::<enmm_energies>(),
+            size_of::<enmm_totals>(),
+            size_of::<enmm_port_state>(),
+            size_of::<enmm_monitor_state>(),
+        ];
         let (mut buffer, known) = sized(sizes[which], 1, random);
         let (k, is_null) = (random.pick(&[0, 1, 2, 3, u32::MAX]), random.chance(5));
         trace.say(|| format!("one {which} of {k}: null {is_null}, sized {known}"));
@@ -295,18 +302,19 @@ impl Host {
             match which {
                 0 => ("energies", observe::enmm_get_energies(model, out.cast())),
                 1 => ("totals", observe::enmm_get_totals(model, out.cast())),
-                _ => ("port state", observe::enmm_get_port_state(model, k, out.cast())),
+                2 => ("port state", observe::enmm_get_port_state(model, k, out.cast())),
+                _ => ("monitor state", names::enmm_get_monitor_state(model, k, out.cast())),
             }
         };
         buffer.check(name, status != OK)?;
         if status == OK && known {
-            finite(name, &buffer.numbers([16, 6, 15][which])[1..])?;
+            finite(name, &buffer.numbers([16, 6, 15, 5][which])[1..])?;
         }
         Ok((name, status))
     }
 
     fn number(&mut self, model: Model, random: &mut Random, trace: &mut Trace) -> Call {
-        let (which, mut buffer) = (random.below(12), Buffer::new(1));
+        let (which, mut buffer) = (random.below(13), Buffer::new(1));
         let k = random.pick(&[0, 1, 2, 3, u32::MAX]);
         let name = random.pick(&[c"block", c"side", c"bed", c"", c"x"]);
         let [x, y] = [0; 2].map(|_| if random.chance(20) { random.wild() } else { random.between(-1.0, 3.0) });
@@ -326,6 +334,7 @@ impl Host {
                 8 => ("port count", observe::enmm_port_count(model, out.cast())),
                 9 => ("find port", observe::enmm_find_port(model, name.as_ptr(), out.cast())),
                 10 => ("port kind", observe::enmm_port_kind(model, k, out.cast())),
+                11 => ("name count", names::enmm_name_count(model, k.cast_signed(), out.cast())),
                 _ => ("port block", observe::enmm_port_block(model, k, out.cast())),
             }
         };

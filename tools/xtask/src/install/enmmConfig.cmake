@@ -3,12 +3,11 @@ get_filename_component(_enmm_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUT
 if(NOT TARGET enmm::enmm)
   add_library(enmm::enmm SHARED IMPORTED)
   set_target_properties(enmm::enmm PROPERTIES
-    IMPORTED_LOCATION "${_enmm_prefix}/lib/libenmm.so"
-    IMPORTED_SONAME "libenmm.so"
+    @SHARED_PROPERTIES@
     INTERFACE_INCLUDE_DIRECTORIES "${_enmm_prefix}/include")
   add_library(enmm::static STATIC IMPORTED)
   set_target_properties(enmm::static PROPERTIES
-    IMPORTED_LOCATION "${_enmm_prefix}/lib/libenmm.a"
+    IMPORTED_LOCATION "${_enmm_prefix}/@STATIC_LIBRARY@"
     INTERFACE_LINK_LIBRARIES "@SYSTEM_LIBRARIES@"
     INTERFACE_INCLUDE_DIRECTORIES "${_enmm_prefix}/include")
 endif()

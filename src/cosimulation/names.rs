@@ -1,0 +1,107 @@
+//! Names of what a model has by number, and the state of monitors.
+
+use crate::model::MonitorState;
+
+use super::{Cosimulation, CosimulationError};
+
+/// What has a number and a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Named {
+    /// A joint trace, which events of slip and of broken bonds name.
+    Joint,
+    /// A joint law, in alphabetical order, as contacts name them.
+    Law,
+    /// A rock, in alphabetical order.
+    Rock,
+    /// A stage, in the order of the case.
+    Stage,
+    /// A block.
+    Block,
+    /// A monitor, in the order of the case.
+    Monitor,
+    /// A port, in the order of the case.
+    Port,
+}
+
+impl Named {
+    /// The word for several of them.
+    fn plural(self) -> &'static str {
+        match self {
+            Self::Joint => "joint traces",
+            Self::Law => "joint laws",
+            Self::Rock => "rocks",
+            Self::Stage => "stages",
+            Self::Block => "blocks",
+            Self::Monitor => "monitors",
+            Self::Port => "ports",
+        }
+    }
+}
+
+impl Cosimulation {
+    /// Number of things of a kind. It never changes.
+    pub fn name_count(&self, kind: Named) -> usize {
+        let (model, case) = (self.simulation.model(), self.case());
+        match kind {
+            Named::Joint => model.trace_law.len(),
+            Named::Law => case.joint_laws.len(),
+            Named::Rock => case.rocks.len(),
+            Named::Stage => case.stages.len(),
+            Named::Block => model.covers.block_count(),
+            Named::Monitor => case.monitors.len(),
+            Named::Port => model.ports.len(),
+        }
+    }
+
+    /// Name of a thing by its number: that of the case, or a stand-in for what the case does not name. These are
+    /// `joint[2]` for a joint, by its place in the case; for a trace of a joint set the name of the set, or
+    /// `joint_set[1]`, and its number in the set, as in `bedding trace 4`; `rock bridge 7`; `trace 9` for any other
+    /// joint trace, which a region of another law has parted or which surrounds an island; and `block 3`.
+    ///
+    /// # Errors
+    /// There is nothing of that number.
+    pub fn name(&self, kind: Named, index: usize) -> Result<String, CosimulationError> {
+        self.check_named(kind, index)?;
+        let case = self.case();
+        let key = |name: Option<&String>| name.cloned().unwrap_or_default();
+        Ok(match kind {
+            Named::Joint => self.trace_name(index),
+            Named::Law => key(case.joint_laws.keys().nth(index)),
+            Named::Rock => key(case.rocks.keys().nth(index)),
+            Named::Stage => case.stages[index].name.clone(),
+            Named::Block => format!("block {index}"),
+            Named::Monitor => case.monitors[index].name.clone(),
+            Named::Port => self.ports()[index].name.clone(),
+        })
+    }
+
+    /// Displacement (m) and velocity (m/s) of a monitor of the case.
+    ///
+    /// # Errors
+    /// There is no such monitor.
+    pub fn monitor_state(&self, monitor: usize) -> Result<MonitorState, CosimulationError> {
+        self.check_named(Named::Monitor, monitor)?;
+        Ok(self.simulation.monitor(monitor))
+    }
+
+    fn check_named(&self, kind: Named, index: usize) -> Result<(), CosimulationError> {
+        let count = self.name_count(kind);
+        if index < count {
+            return Ok(());
+        }
+        let limit = format!("less than the number of {}, {count}", kind.plural());
+        Err(CosimulationError::value("index", index, &limit, "ask for their number first"))
+    }
+
+    fn trace_name(&self, trace: usize) -> String {
+        let built = self.simulation.built();
+        if trace < self.case().joints.len() {
+            return format!("joint[{trace}]");
+        }
+        if let Some(set) = built.set_start.windows(2).position(|range| (range[0]..range[1]).contains(&trace)) {
+            return format!("{} trace {}", self.case().joint_set_name(set), trace - built.set_start[set]);
+        }
+        let is_bridge = built.bridges.iter().any(|bridge| bridge.trace == trace);
+        if is_bridge { format!("rock bridge {trace}") } else { format!("trace {trace}") }
+    }
+}
