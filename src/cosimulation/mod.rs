@@ -8,6 +8,7 @@ mod observe;
 mod parameter;
 mod saved;
 mod threads;
+mod witness;
 
 pub use crate::state::{Event, EventKind, PortKind, Quantity};
 pub use error::CosimulationError;
@@ -15,6 +16,7 @@ pub use interval::{Interval, StepInfo};
 pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
+pub use witness::Witness;
 
 use std::sync::Arc;
 
@@ -28,6 +30,7 @@ use crate::model::{BlockState, Simulation, SlopeFailure};
 use crate::state::{Inputs, Port, State};
 use crate::step::{StepReport, THREADS_FROM};
 use threads::Pool;
+use witness::Watch;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -75,6 +78,7 @@ pub struct Cosimulation {
     serial: u64,
     /// Threads of steps, when they are more than the caller's own and the model is worth them.
     pool: Option<Arc<Pool>>,
+    watch: Watch,
 }
 
 impl Cosimulation {
@@ -87,7 +91,8 @@ impl Cosimulation {
         let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
         let backup = Saved::of(simulation.state(), &hash);
-        Ok(Self { simulation, hash, grid: None, progress: Progress::default(), backup, serial: 0, pool: None })
+        let (progress, watch) = (Progress::default(), Watch::default());
+        Ok(Self { simulation, hash, grid: None, progress, backup, serial: 0, pool: None, watch })
     }
 
     /// The case.
@@ -187,7 +192,7 @@ impl Cosimulation {
     fn seek(&mut self) -> Result<(), CosimulationError> {
         self.simulation.drive().arrive();
         let shaking = self.clear_base_motion();
-        self.run_initial_stages().inspect_err(|_| self.roll_back())?;
+        self.run_initial_stages().inspect_err(|error| self.take_back(error))?;
         let drive = self.simulation.drive();
         (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
         self.progress.origin = self.simulation.state().step;
@@ -214,13 +219,24 @@ impl Cosimulation {
             let last = settle::until_over(self, Self::simulation, step)?;
             let report = last.unwrap_or_else(|| self.look(Simulation::report_on));
             self.progress.initial_residual = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
-            self.next_stage()?;
+            self.next_stage(last.as_ref())?;
         }
         Ok(())
     }
 
-    fn next_stage(&mut self) -> Result<bool, CosimulationError> {
-        self.simulation.next_stage().map_err(CosimulationError::Stage)
+    /// Begins the next stage of the case, if there is one, behind the `last` report of the one before.
+    fn next_stage(&mut self, last: Option<&StepReport>) -> Result<(), CosimulationError> {
+        if self.simulation.state().stage as usize + 1 >= self.case().stages.len() {
+            return Ok(());
+        }
+        if let Some(witness) = &mut self.watch.0 {
+            witness.stage_ends(&self.simulation, last);
+        }
+        self.simulation.next_stage().map_err(CosimulationError::Stage)?;
+        if let Some(witness) = &mut self.watch.0 {
+            witness.stage_begins(&self.simulation);
+        }
+        Ok(())
     }
 
     /// State of every block, by id.
@@ -265,6 +281,9 @@ impl Cosimulation {
         if let Some(foreign) = self.pool.as_ref().filter(|pool| pool.here().is_none()) {
             self.set_threads(foreign.threads())?;
         }
+        let is_whole = part.is_none() && self.simulation.state().part == 0.0;
+        let witness = self.watch.0.as_mut().filter(|_| is_whole);
+        let report = witness.is_some_and(|witness| witness.step_begins(&self.simulation)) || report;
         let simulation = &mut self.simulation;
         let mut act = || match part {
             Some(dt) => simulation.advance_part(dt),
@@ -274,7 +293,28 @@ impl Cosimulation {
             Some(pool) => pool.install(act),
             None => act(),
         };
-        Ok(advanced?)
+        let made = advanced?;
+        if let Some(witness) = self.watch.0.as_mut().filter(|_| report) {
+            witness.step_ends(&self.simulation, &made);
+        }
+        Ok(made)
+    }
+
+    /// Sets who sees the steps of the model, or nobody; returns who did so before. Copies of the model have none.
+    pub fn set_witness(&mut self, witness: Option<Box<dyn Witness>>) -> Option<Box<dyn Witness>> {
+        std::mem::replace(&mut self.watch.0, witness)
+    }
+
+    /// Who sees the steps of the model.
+    pub fn witness(&self) -> Option<&dyn Witness> {
+        self.watch.0.as_deref()
+    }
+
+    /// The state from which the model goes on: where it stands between two points of the grid and no input has changed,
+    /// the last point of the grid.
+    pub fn onward(&self) -> &State {
+        let kept = self.grid.as_deref().filter(|_| !self.progress.changed);
+        kept.unwrap_or(self.simulation.state())
     }
 
     /// Result of `look` at the model on the threads of steps or, by its second argument, on the caller's alone, as in a

@@ -118,12 +118,20 @@ impl Cosimulation {
     pub(super) fn roll_back(&mut self) {
         self.serial += 1;
         self.progress = self.backup.give(&mut self.simulation, &mut self.grid);
+        self.show_return();
+    }
+
+    fn show_return(&mut self) {
+        if let Some(witness) = &mut self.watch.0 {
+            witness.returns(&self.simulation);
+        }
     }
 
     /// Goes back to a saved state.
     fn return_to(&mut self, saved: &Saved) {
         self.serial += 1;
         self.progress = saved.give(&mut self.simulation, &mut self.grid);
+        self.show_return();
     }
 
     /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`bytes`]).

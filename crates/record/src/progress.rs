@@ -10,31 +10,39 @@ use enmm::geometry::Vector;
 use enmm::model::bytes::BytesError;
 use enmm::model::fit::{self, Unfit};
 use enmm::model::{Ledger, Simulation, State};
-use enmm_io::checkpoint;
+use enmm_io::checkpoint::{self, CheckpointError};
 
-use super::RunError;
+/// Name of the checkpoint in a folder of results.
+pub const CHECKPOINT: &str = "checkpoint.enmm";
 
 /// Progress of a run beyond its state; part of its checkpoints, and so without a clock: equal runs leave equal bytes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(super) struct Progress {
+pub struct Progress {
     /// Stages that are over.
-    pub(super) done: Vec<StageRecord>,
-    /// Unsettled sub-steps before this stage.
-    pub(super) unsettled_before: u64,
-    /// Potential energy at the start of this stage (J/m).
-    pub(super) potential_start: Option<f64>,
-    /// Sweeps and sub-steps at the last row.
-    pub(super) row_sweeps: [u64; 2],
-    /// Largest penetration at reports of this stage (m).
-    pub(super) penetration_max: f64,
-    /// Unbalanced ratio at the last report.
-    pub(super) unbalanced: f64,
-    /// Ledger at the last report.
-    pub(super) ledger: Ledger,
+    pub done: Vec<StageRecord>,
+    /// Numbers of the reports up to now.
+    pub reports: Reports,
     /// Displacements of the covers at the start of this stage (m); empty where the state has them.
-    pub(super) started: Vec<Vector>,
+    pub started: Vec<Vector>,
     /// Where the dynamic stages that are over have left the rock.
-    pub(super) permanent: Vec<PermanentMotion>,
+    pub permanent: Vec<PermanentMotion>,
+}
+
+/// Numbers of the reports up to an instant.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Reports {
+    /// Unsettled sub-steps before this stage.
+    pub unsettled_before: u64,
+    /// Potential energy at the start of this stage (J/m).
+    pub potential_start: Option<f64>,
+    /// Sweeps and sub-steps at the last row.
+    pub row_sweeps: [u64; 2],
+    /// Largest penetration at reports of this stage (m).
+    pub penetration_max: f64,
+    /// Unbalanced ratio at the last report.
+    pub unbalanced: f64,
+    /// Ledger at the last report.
+    pub ledger: Ledger,
 }
 
 impl Progress {
@@ -43,8 +51,8 @@ impl Progress {
     /// # Errors
     /// The first number that cannot.
     fn check(&self, state: &State) -> Result<(), Unfit> {
-        let Self { done, unsettled_before, potential_start, row_sweeps, .. } = self;
-        let Self { penetration_max, unbalanced, ledger, started, permanent, .. } = self;
+        let Self { done, reports, started, permanent } = self;
+        let Reports { unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger } = reports;
         let stages = u64::from(state.stage);
         fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
         fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
@@ -65,19 +73,20 @@ impl Progress {
 
 /// A checkpoint of a run. The state comes first, so that it can be read alone.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Saved<S = State> {
-    pub(super) state: S,
-    pub(super) progress: Progress,
+pub struct Saved<S = State> {
+    /// State of the model.
+    pub state: S,
+    /// How far the run is beyond it.
+    pub progress: Progress,
 }
 
 /// Loads a checkpoint of a run of this model.
 ///
 /// # Errors
 /// One that cannot be read, or is of another run.
-pub(super) fn load(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, RunError> {
-    let refuse = |error| RunError::Checkpoint { path: path.to_owned(), error };
-    let saved: Saved = checkpoint::load(path, hash).map_err(refuse)?;
+pub fn load_checkpoint(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, CheckpointError> {
+    let saved: Saved = checkpoint::load(path, hash)?;
     let fits = simulation.check(&saved.state).and_then(|()| saved.progress.check(&saved.state));
-    fits.map_err(|unfit| refuse(BytesError::Damaged(unfit.to_string()).into()))?;
+    fits.map_err(|unfit| BytesError::Damaged(unfit.to_string()))?;
     Ok(saved)
 }
