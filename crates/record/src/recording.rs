@@ -86,7 +86,9 @@ pub struct Recording {
     recorder: Recorder,
     loaded: LoadedCase,
     directory: PathBuf,
-    _held: Folder,
+    folder: Option<Folder>,
+    /// Process that records; a forked one writes nothing.
+    process: u32,
     last: Last,
     /// The same without what is kept back.
     written: Last,
@@ -157,7 +159,7 @@ impl Recording {
 
     fn begin(simulation: &Simulation, loaded: &LoadedCase, directory: &Path) -> io::Result<Self> {
         let clock = Instant::now();
-        let held = Folder::open(directory, loaded.source.inputs())?;
+        let folder = Folder::open(directory, loaded.source.inputs())?;
         results::draw_model(simulation, directory)?;
         let warnings = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
         let setting = Setting { loaded, directory, command: "coupled", past: None, warnings, clock };
@@ -166,7 +168,8 @@ impl Recording {
             recorder: Recorder::open(setting, simulation)?,
             loaded: loaded.clone(),
             directory: directory.to_owned(),
-            _held: held,
+            folder: Some(folder),
+            process: std::process::id(),
             last: Last::NONE,
             written: Last::NONE,
             held_from: simulation.time(),
@@ -186,6 +189,18 @@ impl Recording {
         }
         recording.release(simulation)?;
         Ok(recording)
+    }
+
+    /// Fails in a process that was forked from the one that records.
+    fn check_process(&self) -> io::Result<()> {
+        if self.is_own() {
+            return Ok(());
+        }
+        Err(io::Error::other("this process was forked from the one that records"))
+    }
+
+    fn is_own(&self) -> bool {
+        self.process == std::process::id()
     }
 
     fn begin_stage(&mut self, simulation: &Simulation) -> io::Result<()> {
@@ -220,6 +235,7 @@ impl Recording {
 
     /// Writes frames and the row of this instant at once.
     fn show(&mut self, simulation: &Simulation) -> io::Result<()> {
+        self.check_process()?;
         self.release(simulation)?;
         self.recorder.want_frames(simulation)?;
         self.show_due(simulation, true)?;
@@ -262,8 +278,11 @@ impl Recording {
         if self.recorder.held() > HELD_MAX {
             self.release(simulation)?;
         }
-        self.show_due(simulation, false)?;
         let step = simulation.state().stage_step;
+        if step == 0 {
+            self.check_process()?;
+        }
+        self.show_due(simulation, false)?;
         // Steps from between two points of the grid are not seen, so that a row may have been due meanwhile.
         let first = self.seen.map_or(step, |seen| seen + 1).min(step);
         let is_due = (first..=step).any(|step| self.recorder.plan().row_due(step));
@@ -346,6 +365,7 @@ impl Recording {
 
     /// Writes the end of a recording.
     fn end(&mut self, model: &Cosimulation) -> io::Result<Summary> {
+        self.check_process()?;
         let simulation = model.simulation();
         self.recorder.release()?;
         self.warn_of_overlaps(simulation)?;
@@ -384,6 +404,7 @@ impl Witness for Recording {
         self.coupled.communication_steps += 1;
         self.failure = None;
         self.note(|recording| {
+            recording.check_process()?;
             recording.warn_of_overlaps(simulation)?;
             recording.release(simulation)
         });
@@ -412,6 +433,15 @@ impl Witness for Recording {
 
     fn fails(&mut self, error: &StepError) {
         self.failure = Some(*error);
+    }
+}
+
+impl Drop for Recording {
+    /// The lock of the folder belongs to the process that took it.
+    fn drop(&mut self) {
+        if !self.is_own() {
+            std::mem::forget(self.folder.take());
+        }
     }
 }
 

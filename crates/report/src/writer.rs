@@ -28,11 +28,14 @@ pub struct FilmWriter {
     held: Option<Held>,
 }
 
-/// Chunks that are kept back, with the rows and the stage of the film before them.
+/// Chunks that are kept back, with the stage of the film before them.
 #[derive(Debug)]
 struct Held {
     bytes: Vec<u8>,
-    rows: Vec<Vec<f64>>,
+    /// Number of the rows that were gathered before.
+    before: usize,
+    /// These rows, once a chunk that is kept back has them.
+    rows: Option<Vec<Vec<f64>>>,
     stage: Option<u32>,
 }
 
@@ -115,7 +118,7 @@ impl FilmWriter {
 
     /// Keeps back what follows until [`FilmWriter::release`] writes it or [`FilmWriter::discard`] forgets it.
     pub fn hold(&mut self) {
-        self.held = Some(Held { bytes: Vec::new(), rows: self.rows.clone(), stage: self.stage });
+        self.held = Some(Held { bytes: Vec::new(), before: self.rows.len(), rows: None, stage: self.stage });
     }
 
     /// Bytes that are kept back.
@@ -134,8 +137,11 @@ impl FilmWriter {
 
     /// Forgets what has been kept back; what follows is no longer kept back.
     pub fn discard(&mut self) {
-        if let Some(held) = self.held.take() {
-            (self.rows, self.stage) = (held.rows, held.stage);
+        let Some(held) = self.held.take() else { return };
+        self.stage = held.stage;
+        match held.rows {
+            Some(rows) => self.rows = rows,
+            None => self.rows.truncate(held.before),
         }
     }
 
@@ -163,7 +169,11 @@ impl FilmWriter {
             let numbers: Vec<f32> = self.rows.iter().map(|row| row[column] as f32).collect();
             push_planes(&numbers, Width::Full, &mut bytes);
         }
-        self.rows.clear();
+        let mut rows = std::mem::take(&mut self.rows);
+        if let Some(held) = self.held.as_mut().filter(|held| held.rows.is_none()) {
+            rows.truncate(held.before);
+            held.rows = Some(rows);
+        }
         self.append(Kind::Rows, time, &bytes)
     }
 

@@ -80,7 +80,7 @@ fn plain() -> Result<String, String> {
     };
     let mut builder = Builder::new().with_config(config).include_item("enmm_interpolation");
     let sources = root().join("ffi/capi/src");
-    for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/observe", "abi/state"] {
+    for file in ["types", "abi/library", "abi/model", "abi/inputs", "abi/observe", "abi/state", "abi/record"] {
         builder = builder.with_src(sources.join(file).with_extension("rs"));
     }
     let own = std::env::temp_dir().join(format!("enmm-structures-{}.rs", std::process::id()));

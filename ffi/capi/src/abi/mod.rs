@@ -5,4 +5,5 @@ pub mod library;
 pub mod model;
 pub mod observe;
 mod pointers;
+pub mod record;
 pub mod state;

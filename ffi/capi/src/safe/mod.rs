@@ -7,4 +7,5 @@ pub mod handles;
 pub mod inputs;
 pub mod model;
 pub mod observe;
+pub mod record;
 pub mod state;

@@ -82,6 +82,10 @@ pub struct Model {
     pub inner: Cosimulation,
     log: Log,
     warnings: Vec<String>,
+    /// The case, which records of results show.
+    pub(super) loaded: LoadedCase,
+    /// Whether the host has heard that recording has ended by itself.
+    pub(super) lost_record: bool,
 }
 
 /// Messages of one call, and where they go.
@@ -119,7 +123,7 @@ impl Mail {
 /// # Errors
 /// The file cannot be read, or the case cannot be used.
 pub fn create_from_file(path: &str) -> Result<usize, Failure> {
-    create(&load_case(Path::new(path))?)
+    create(load_case(Path::new(path))?)
 }
 
 /// Builds a model from the text of a case and returns its handle.
@@ -127,7 +131,7 @@ pub fn create_from_file(path: &str) -> Result<usize, Failure> {
 /// # Errors
 /// The case cannot be used.
 pub fn create_from_string(toml: &str, base_dir: &str) -> Result<usize, Failure> {
-    create(&parse_case(toml, "case", Path::new(base_dir))?)
+    create(parse_case(toml, "case", Path::new(base_dir))?)
 }
 
 /// Reads a case from text without a model of it; `base_dir` is where the files are that it names.
@@ -139,10 +143,10 @@ pub fn check_case(toml: &str, base_dir: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
+fn create(loaded: LoadedCase) -> Result<usize, Failure> {
     let inner = loaded.cosimulation()?;
     let warnings = loaded.warnings.iter().chain(inner.warnings()).cloned().collect();
-    let model = Model { inner, log: Log::default(), warnings };
+    let model = Model { inner, log: Log::default(), warnings, loaded, lost_record: false };
     MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0) })
 }
 
@@ -173,6 +177,7 @@ impl Model {
             self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone());
         }
         self.log_start(was_started);
+        self.log_record();
         result
     }
 
@@ -188,6 +193,7 @@ impl Model {
             Ok(info) => self.log_step(info),
             Err(failure) => self.log.write(enmm_log_level::ENMM_LOG_ERROR, || failure.message.clone()),
         }
+        self.log_record();
         let info = result?;
         Ok(enmm_step_info {
             struct_size: size_of::<enmm_step_info>(),
@@ -199,6 +205,14 @@ impl Model {
             halved: info.halved,
             unsettled: info.unsettled,
         })
+    }
+
+    /// Logs once that recording has ended by itself.
+    fn log_record(&mut self) {
+        if let (Some(fault), false) = (self.record_fault(), self.lost_record) {
+            self.lost_record = true;
+            self.log.write(enmm_log_level::ENMM_LOG_ERROR, || fault);
+        }
     }
 
     /// Logs the initial equilibrium when this call has computed it.
