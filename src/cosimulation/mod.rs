@@ -60,6 +60,22 @@ struct Progress {
     host_time: f64,
 }
 
+impl Progress {
+    /// That of a model that takes up the state of a run.
+    fn of(state: &State, model: &Cosimulation) -> Self {
+        let (first, dt) = (initial_stages(model.case()), model.internal_step());
+        let started = state.stage as usize >= first;
+        let begun = state.stage_starts.get(first).copied().unwrap_or_default();
+        let since = ((state.stage_start - begun) / dt).round().max(0.0) as u64 + state.stage_step;
+        let (origin, start) = match started {
+            true => (state.step.saturating_sub(since), begun),
+            false => (state.step, state.stage_start + state.stage_step as f64 * dt),
+        };
+        let host_time = state.step.saturating_sub(origin) as f64 * dt + state.part;
+        Self { origin, start, started, host_time, ..Self::default() }
+    }
+}
+
 /// A model in the hands of a host.
 ///
 /// Time 0 is the start of the first dynamic stage: static stages before it are the initial equilibrium, which
@@ -211,7 +227,8 @@ impl Cosimulation {
     }
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
-        for _ in 0..initial_stages(self.case()) {
+        // The state of a run may be in one of them.
+        for _ in self.simulation.state().stage as usize..initial_stages(self.case()) {
             let step = |model: &mut Self| {
                 let wanted = model.simulation.rest_due();
                 model.step(None, wanted).map(|report| wanted.then_some(report))
@@ -313,8 +330,7 @@ impl Cosimulation {
     /// The state from which the model goes on: where it stands between two points of the grid and no input has changed,
     /// the last point of the grid.
     pub fn onward(&self) -> &State {
-        let kept = self.grid.as_deref().filter(|_| !self.progress.changed);
-        kept.unwrap_or(self.simulation.state())
+        saved::kept(self.grid.as_deref(), self.progress).unwrap_or(self.simulation.state())
     }
 
     /// Result of `look` at the model on the threads of steps or, by its second argument, on the caller's alone, as in a

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 /// A saved state as its bytes hold it.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Whole {
-    pub hash: String,
     pub state: State,
-    pub grid: Option<Box<State>>,
+    pub between: Option<Box<State>>,
     pub progress: Progress,
+    pub hash: String,
 }
 
 /// Where the model stands beside its state.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::motion::PermanentMotion;
 use crate::summary::StageRecord;
 use enmm::geometry::Vector;
-use enmm::model::bytes::BytesError;
+use enmm::model::bytes::{BytesError, Keeper, decode, decode_state};
 use enmm::model::fit::{self, Unfit};
 use enmm::model::{Ledger, Simulation, State};
 use enmm_io::checkpoint::{self, CheckpointError};
@@ -46,6 +46,21 @@ pub struct Reports {
 }
 
 impl Progress {
+    /// That of a run that begins at a state whose past nobody has recorded.
+    fn from_here(simulation: &Simulation, state: &State) -> Self {
+        let stages = 0..state.stage as usize;
+        let counters = &state.counters;
+        let reports = Reports {
+            unsettled_before: counters.unsettled,
+            row_sweeps: [counters.sweeps, counters.substeps],
+            ledger: state.ledger,
+            ..Reports::default()
+        };
+        let started = if state.stage_displacement.is_empty() { state.displacement.clone() } else { Vec::new() };
+        let done = stages.map(|stage| StageRecord::unseen(simulation, state, stage)).collect();
+        Self { done, reports, started, permanent: Vec::new() }
+    }
+
     /// Whether it can be that of a state.
     ///
     /// # Errors
@@ -80,13 +95,19 @@ pub struct Saved<S = State> {
     pub progress: Progress,
 }
 
-/// Loads a checkpoint of a run of this model.
+/// Loads a saved state of this model, and returns whether a run saved it: one of a host brings no progress.
 ///
 /// # Errors
-/// One that cannot be read, or is of another run.
-pub fn load_checkpoint(path: &Path, simulation: &Simulation, hash: &str) -> Result<Saved, CheckpointError> {
-    let saved: Saved = checkpoint::load(path, hash)?;
+/// One that cannot be read, or is of another case.
+pub fn load_checkpoint(path: &Path, simulation: &Simulation, hash: &str) -> Result<(Saved, bool), CheckpointError> {
+    let (keeper, bytes) = checkpoint::read(path, hash)?;
+    if keeper != Keeper::Run {
+        let state = decode_state(Keeper::Run, &bytes, hash)?;
+        simulation.check(&state).map_err(|unfit| BytesError::Damaged(unfit.to_string()))?;
+        return Ok((Saved { progress: Progress::from_here(simulation, &state), state }, false));
+    }
+    let saved: Saved = decode(keeper, &bytes, hash)?;
     let fits = simulation.check(&saved.state).and_then(|()| saved.progress.check(&saved.state));
     fits.map_err(|unfit| BytesError::Damaged(unfit.to_string()))?;
-    Ok(saved)
+    Ok((saved, true))
 }

@@ -221,7 +221,7 @@ impl Recording {
     fn fill_past(&mut self, simulation: &Simulation) {
         let done = &mut self.recorder.progress.done;
         let unseen = done.len()..simulation.state().stage as usize;
-        done.extend(unseen.map(|stage| StageRecord::unseen(simulation, stage)));
+        done.extend(unseen.map(|stage| StageRecord::unseen(simulation, simulation.state(), stage)));
     }
 
     /// Writes what is kept back, and keeps back what follows from now on.

@@ -225,8 +225,8 @@ pub struct StageRecord {
 
 impl StageRecord {
     /// A stage of the past of a state that no run has recorded: its times alone are known.
-    pub(crate) fn unseen(simulation: &Simulation, stage: usize) -> Self {
-        let (of_case, starts) = (&simulation.case().stages[stage], &simulation.state().stage_starts);
+    pub(crate) fn unseen(simulation: &Simulation, state: &State, stage: usize) -> Self {
+        let (of_case, starts) = (&simulation.case().stages[stage], &state.stage_starts);
         let start = starts.get(stage).copied().unwrap_or_default();
         let time = starts.get(stage + 1).map_or(0.0, |end| end - start);
         Self {

@@ -9,5 +9,6 @@ mod issue_a_slide_before_the_trials_passed_as_rest;
 mod issue_history_did_not_sum_to_its_residual;
 mod quiet_run;
 mod shaking;
+mod states_between_runs_and_hosts;
 mod time_left;
 mod unsettled_steps;

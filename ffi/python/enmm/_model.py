@@ -466,7 +466,7 @@ class Model(Closing):
         return _serialized(self._core, state)
 
     def deserialize(self, data: bytes | bytearray | memoryview) -> State:
-        """Makes a state of bytes that `serialize` gave, in this process or another.
+        """Makes a state of bytes that `serialize` gave, in this process or another, or of a `checkpoint.enmm` of a run.
 
         Raises StateError for bytes that are damaged, or of another case or version.
         """

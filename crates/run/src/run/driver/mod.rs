@@ -85,7 +85,7 @@ impl<'a> Driver<'a> {
         options: &'a RunOptions<'a>,
         observer: &'a mut dyn Observer,
         mut simulation: Simulation,
-        saved: Option<Saved>,
+        saved: Option<(Saved, bool)>,
         clock: Instant,
     ) -> Result<Self, RunError> {
         let directory = &options.directory;
@@ -97,12 +97,15 @@ impl<'a> Driver<'a> {
         }
         results::draw_model(&simulation, directory).map_err(RunError::Directory)?;
         let resumed = saved.is_some();
-        let good = saved.unwrap_or_else(|| Saved { state: simulation.state().clone(), progress: Progress::default() });
+        let of_host = saved.as_ref().is_some_and(|(_, of_run)| !of_run);
+        let good =
+            saved.map_or_else(|| Saved { state: simulation.state().clone(), progress: Progress::default() }, |s| s.0);
         if resumed {
             simulation.return_to(&good.state);
         }
         let mut warnings: Vec<String> = loaded.warnings.iter().chain(&simulation.built().warnings).cloned().collect();
         warnings.extend(past.and_then(|past| lost_past(past, &simulation, directory)));
+        warnings.extend(of_host.then(|| unseen_past(&simulation)));
         warnings.iter().for_each(|warning| observer.warn(warning));
         count_of_notes(simulation.built().notes.len()).iter().for_each(|note| observer.note(note));
         let past = resumed.then(|| good.progress.clone());
@@ -283,6 +286,16 @@ impl<'a> Driver<'a> {
         self.good.state.clone_from(self.simulation.state());
         self.good.progress.clone_from(&self.recorder.progress);
     }
+}
+
+/// Warning when the run goes on from the state of a host.
+fn unseen_past(simulation: &Simulation) -> String {
+    format!(
+        "the run goes on from the state of a host at t = {:.6} s, with the inputs that held there: of stages before \
+         only the times are known, and displacements of this stage count from there; a folder that the host has \
+         recorded (enmm_record) has a checkpoint with all of it",
+        simulation.time()
+    )
 }
 
 /// Ends a stage by the refusal of the file system.
