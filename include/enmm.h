@@ -113,7 +113,7 @@ enum enmm_status
    */
   ENMM_INVALID_CASE = 5,
   /**
-   * A file cannot be read.
+   * A file cannot be read or written.
    */
   ENMM_FILE_ERROR = 6,
   /**
@@ -1041,8 +1041,8 @@ enmm_status enmm_create_from_string(const char *toml, const char *base_dir, stru
 enmm_status enmm_check_case(const char *toml, const char *base_dir);
 
 /**
- * Ends a model and frees its memory. NULL and dead handles do nothing. When another thread is in a call with the
- * model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
+ * Ends a model and frees its memory; ends its recording, if there is one. NULL and dead handles do nothing. When
+ * another thread is in a call with the model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
  *
  * It never waits. After it returns, the log callback gets no further message on the calling thread. When another
  * thread is in a call with the model, the callback may still run or start there, and its `user` must not be freed
@@ -1112,8 +1112,8 @@ enmm_status enmm_get_stop_time(struct enmm_model *model, double *time);
 
 /**
  * Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
- * depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has none
- * of the threads: a model that it uses starts the same number again at its next step.
+ * depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has
+ * none of the threads: a model that it uses starts the same number again at its next step.
  *
  * Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants; in a forked process enmm_do_step
  * and enmm_start can return it as well.
@@ -1124,10 +1124,10 @@ enmm_status enmm_set_threads(struct enmm_model *model, size_t threads);
  * Sets the callback for messages of this model; NULL (as at creation) discards them. The first callback gets the
  * warnings of the case at once; later messages are delivered at the end of the calls that they belong to.
  *
- * `user` is passed to the callback unchanged. After this function has replaced the callback, `user` is no longer used,
- * except by a message that is just being delivered. That happens only when a callback replaces itself: while another
- * thread delivers, this function returns ENMM_BUSY. Messages that have not been delivered yet go to the new callback.
- * For the end of the model see enmm_destroy.
+ * `user` is passed to the callback unchanged. After this function has replaced the callback, `user` is no longer
+ * used, except by a message that is just being delivered. That happens only when a callback replaces itself: while
+ * another thread delivers, this function returns ENMM_BUSY. Messages that have not been delivered yet go to the new
+ * callback. For the end of the model see enmm_destroy.
  *
  * Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
  */
@@ -1682,7 +1682,8 @@ enmm_status enmm_state_serialize(struct enmm_model *model,
                                  size_t *written);
 
 /**
- * Makes a state from bytes that enmm_state_serialize wrote, in this process or another.
+ * Makes a state from bytes that enmm_state_serialize wrote, in this process or another, or from those of a
+ * `checkpoint.enmm` of `enmm run` on the same case.
  *
  * `*out` gets the handle, which enmm_state_free frees, or NULL on failure.
  *
@@ -1705,6 +1706,40 @@ enmm_status enmm_state_deserialize_with(struct enmm_model *model,
                                         size_t size,
                                         uint32_t flags,
                                         struct enmm_state **out);
+
+/**
+ * Records the results of the model into a folder from now on: the files of `enmm run`, among them `history.csv`, the
+ * film, frames for ParaView where the case asks for them, and at the end pictures, `checkpoint.enmm`, `report.html`
+ * and `summary.json`, of which `enmm report` makes a report.
+ *
+ * `folder` is a path in UTF-8, relative to the current directory; it is made if it is not there, and results of an
+ * earlier run in it are replaced. Call it before enmm_start to have the initial equilibrium. Rows and frames are due
+ * at the times of the case, which count all stages as in `enmm run`. What a step brings is written when the next one
+ * begins, so that a step that is repeated from a saved state leaves nothing twice; a return to an earlier state
+ * removes what is later. Recording changes no result. When a file cannot be written later, steps go on: the log gets
+ * the error, and enmm_end_record returns it.
+ *
+ * Errors: ENMM_FILE_ERROR when the folder cannot be written, another process writes there, or a result would replace
+ * an input of the case; ENMM_INVALID_ARGUMENT when the model is recorded already; ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_record(struct enmm_model *model, const char *folder);
+
+/**
+ * Writes a row of the history, a frame of the film and frames for ParaView of this instant at once, the latter also
+ * when the case asks for none. A host that repeats steps calls it when a step stands.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT when the model is not recorded; ENMM_FILE_ERROR.
+ */
+enmm_status enmm_write_frame(struct enmm_model *model);
+
+/**
+ * Ends the recording with pictures, checkpoint, page and summary. enmm_destroy does so too, but cannot return an
+ * error.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT when the model is not recorded; ENMM_FILE_ERROR when a file could not be written,
+ * now or since enmm_record. The recording has ended in any case.
+ */
+enmm_status enmm_end_record(struct enmm_model *model);
 
 #ifdef __cplusplus
 }  // extern "C"

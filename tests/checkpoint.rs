@@ -2,9 +2,9 @@
 //! any number of threads; a checkpoint that is not whole, or not of this case and version, is refused.
 
 use crate::common::simulation;
-use enmm::model::bytes::{BytesError, Keeper, decode, encode};
+use enmm::model::bytes::{BytesError, Keeper, decode, decode_state, encode};
 use enmm::model::{Simulation, State};
-use enmm_io::checkpoint::{CheckpointError, load, save};
+use enmm_io::checkpoint::{CheckpointError, read, save};
 
 /// A jointed slope whose covers are enough to be shared between threads (more than 2048), falling apart.
 const SLOPE: &str = r#"
@@ -90,8 +90,14 @@ fn a_file_gives_back_what_was_saved() {
     let mut one = simulation(SLOPE);
     advance(&mut one, 5);
     save(&path, one.state(), "0123").expect("written");
-    assert_eq!(&load::<State>(&path, "0123").expect("read"), one.state());
-    let error = load::<State>(&path.with_extension("absent"), "0123").expect_err("absent");
+    let (keeper, bytes) = read(&path, "0123").expect("read");
+    assert_eq!(keeper, Keeper::Run);
+    for own in [Keeper::Run, Keeper::Model] {
+        assert_eq!(&decode_state(own, &bytes, "0123").expect("a state"), one.state());
+    }
+    let of_run = decode_state(Keeper::Fmu, &bytes, "0123").expect_err("no state of an FMU");
+    assert!(matches!(of_run, BytesError::OtherKeeper { found: Keeper::Run, own: Keeper::Fmu }), "{of_run}");
+    let error = read(&path.with_extension("absent"), "0123").expect_err("absent");
     assert!(matches!(error, CheckpointError::Unreadable(_)));
 }
 

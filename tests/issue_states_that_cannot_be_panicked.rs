@@ -59,9 +59,9 @@ const DAMAGES: [Damage; 33] = [
     ("ledger", |w| w.state.ledger.friction = f64::NAN),
     ("counters.dt_min", |w| w.state.counters.dt_min = f64::INFINITY),
     ("host_time", |w| w.progress.told = f64::NAN),
-    ("grid: displacement[2].y", |w| {
-        if let Some(grid) = &mut w.grid {
-            grid.displacement[2].y = f64::INFINITY;
+    ("between: displacement[2].y", |w| {
+        if let Some(between) = &mut w.between {
+            between.displacement[2].y = f64::INFINITY;
         }
     }),
 ];

@@ -474,6 +474,20 @@ public:
         return State(state);
     }
 
+    // Results.
+
+    /** Records results into a folder from now on, as `enmm run` writes them; see enmm_record. */
+    void record(const std::string &folder)
+    {
+        call([&](Frame &) { return enmm_record(handle_, folder.c_str()); });
+    }
+
+    /** Writes a row and frames of this instant at once. */
+    void write_frame() { call([&](Frame &) { return enmm_write_frame(handle_); }); }
+
+    /** Ends the recording with pictures, page and summary; the end of the model does so too, but without an error. */
+    void end_record() { call([&](Frame &) { return enmm_end_record(handle_); }); }
+
     /**
      * Sets where messages go; an empty function stops them. What it throws comes out of the call of this object that it
      * speaks in.

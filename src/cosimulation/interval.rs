@@ -97,6 +97,9 @@ impl Cosimulation {
         } else if let Some(kept) = self.grid.take() {
             self.simulation.restore(*kept);
         }
+        if let Some(witness) = &mut self.attendance.0 {
+            witness.communication_step_begins(&self.simulation);
+        }
         self.serial += 1;
         let state = self.simulation.state();
         let info = StepInfo { time: self.time(), ..StepInfo::default() };
@@ -151,7 +154,7 @@ impl Cosimulation {
     /// One internal step, or the part of it that is `left` (s); returns its length. Times within `same` are the same.
     fn internal(&mut self, left: f64, same: f64) -> Result<f64, CosimulationError> {
         if self.simulation.stage_is_over(None) {
-            self.next_stage()?;
+            self.next_stage(None)?;
         }
         let rest = self.simulation.state().rest_of_step(self.simulation.model());
         let wanted = if left <= rest + same { Wanted::Forces } else { Wanted::Nothing };
@@ -220,10 +223,18 @@ impl Cosimulation {
         is_new && before <= few() && mass(events) > few()
     }
 
+    /// Rolls back after a failure, and shows it to the witness.
+    pub(super) fn take_back(&mut self, error: &CosimulationError) {
+        self.roll_back();
+        if let (Some(witness), CosimulationError::Step(error)) = (&mut self.attendance.0, error) {
+            witness.fails(error);
+        }
+    }
+
     /// Rolls back and converts times to those that hosts count.
     fn fail(&mut self, error: CosimulationError) -> CosimulationError {
         let start = self.progress.start;
-        self.roll_back();
+        self.take_back(&error);
         match error {
             CosimulationError::Step(mut error) => {
                 error.time -= start;

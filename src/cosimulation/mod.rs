@@ -32,6 +32,7 @@ mod saved;
 mod threads;
 mod tuning;
 mod watch;
+mod witness;
 
 pub use crate::state::{Event, EventKind, Input, PortKind, Quantity};
 pub use error::CosimulationError;
@@ -41,6 +42,7 @@ pub use observe::{ContactCounts, PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use parameter::{Parameter, ParameterError, apply, parameters};
 pub use saved::Saved;
 pub use watch::{Pace, Watch};
+pub use witness::Witness;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -58,6 +60,7 @@ use crate::step::{StepReport, THREADS_FROM, Wanted};
 use threads::Pool;
 use tuning::Parameters;
 use watch::Watcher;
+use witness::Attendance;
 
 /// How inputs go through a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,6 +116,22 @@ type Ways = BTreeMap<Input, Interpolation>;
 /// Displacements (m) by port.
 type Aims = BTreeMap<usize, Vector>;
 
+impl Progress {
+    /// That of a model that takes up the state of a run.
+    fn of(state: &State, model: &Cosimulation) -> Self {
+        let (first, dt) = (initial_stages(model.case()), model.internal_step());
+        let started = state.stage as usize >= first;
+        let begun = state.stage_starts.get(first).copied().unwrap_or_default();
+        let since = ((state.stage_start - begun) / dt).round().max(0.0) as u64 + state.stage_step;
+        let (origin, start) = match started {
+            true => (state.step.saturating_sub(since), begun),
+            false => (state.step, state.stage_start + state.stage_step as f64 * dt),
+        };
+        let host_time = state.step.saturating_sub(origin) as f64 * dt + state.part;
+        Self { origin, start, started, host_time, ..Self::default() }
+    }
+}
+
 /// A model in the hands of a host.
 ///
 /// Time 0 is the start of the first dynamic stage: static stages before it are the initial equilibrium, which
@@ -138,6 +157,7 @@ pub struct Cosimulation {
     pool: Option<Arc<Pool>>,
     /// What looks at calls, and may end them.
     watcher: Watcher,
+    attendance: Attendance,
 }
 
 impl Cosimulation {
@@ -150,7 +170,7 @@ impl Cosimulation {
         let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
         let parameters = Parameters::of(simulation.case())?;
-        let backup = Saved::of(&simulation, &hash, &parameters);
+        let backup = Saved::first(&simulation, &hash, &parameters);
         Ok(Self {
             simulation,
             hash,
@@ -163,6 +183,7 @@ impl Cosimulation {
             serial: 0,
             pool: None,
             watcher: Watcher::default(),
+            attendance: Attendance::default(),
         })
     }
 
@@ -263,7 +284,7 @@ impl Cosimulation {
     fn seek(&mut self) -> Result<(), CosimulationError> {
         self.simulation.drive().arrive();
         let shaking = self.clear_base_motion();
-        self.run_initial_stages().inspect_err(|_| self.roll_back())?;
+        self.run_initial_stages().inspect_err(|error| self.take_back(error))?;
         let drive = self.simulation.drive();
         (drive.from.base_acceleration, drive.to.base_acceleration) = (shaking, shaking);
         self.progress.origin = self.simulation.state().step;
@@ -282,7 +303,8 @@ impl Cosimulation {
     }
 
     fn run_initial_stages(&mut self) -> Result<(), CosimulationError> {
-        for _ in 0..initial_stages(self.case()) {
+        // The state of a run may be in one of them.
+        for _ in self.simulation.state().stage as usize..initial_stages(self.case()) {
             let mut unbalanced = None;
             let step = |model: &mut Self| {
                 model.watch_equilibrium(unbalanced)?;
@@ -295,17 +317,27 @@ impl Cosimulation {
             let report = last.unwrap_or_else(|| self.look(Simulation::report_on));
             self.progress.forces = Some(Forces::of(&report));
             self.progress.initial_residual = if self.simulation.at_rest(&report) { 0.0 } else { report.unbalanced };
-            self.next_stage()?;
+            self.next_stage(last.as_ref())?;
         }
         Ok(())
     }
 
-    fn next_stage(&mut self) -> Result<bool, CosimulationError> {
-        let has_begun = self.simulation.next_stage().map_err(CosimulationError::Stage)?;
-        if has_begun && self.progress.started {
+    /// Begins the next stage of the case, if there is one, behind the `last` report of the one before.
+    fn next_stage(&mut self, last: Option<&StepReport>) -> Result<(), CosimulationError> {
+        if self.simulation.state().stage as usize + 1 >= self.case().stages.len() {
+            return Ok(());
+        }
+        if let Some(witness) = &mut self.attendance.0 {
+            witness.stage_ends(&self.simulation, last);
+        }
+        self.simulation.next_stage().map_err(CosimulationError::Stage)?;
+        if self.progress.started {
             self.note_stage();
         }
-        Ok(has_begun)
+        if let Some(witness) = &mut self.attendance.0 {
+            witness.stage_begins(&self.simulation);
+        }
+        Ok(())
     }
 
     /// State of every block, by id.
@@ -381,6 +413,10 @@ impl Cosimulation {
         if let Some(foreign) = self.pool.as_ref().filter(|pool| pool.here().is_none()) {
             self.set_threads(foreign.threads())?;
         }
+        let is_whole = part.is_none() && self.simulation.state().part == 0.0;
+        let witness = self.attendance.0.as_mut().filter(|_| is_whole);
+        let is_seen = witness.is_some_and(|witness| witness.step_begins(&self.simulation));
+        let wanted = if is_seen { Wanted::Report } else { wanted };
         let simulation = &mut self.simulation;
         let mut act = || match part {
             Some(dt) => simulation.advance_part(dt, wanted),
@@ -392,7 +428,26 @@ impl Cosimulation {
         };
         let report = advanced?;
         self.progress.forces = (wanted != Wanted::Nothing).then(|| Forces::of(&report));
+        if let Some(witness) = self.attendance.0.as_mut().filter(|_| wanted == Wanted::Report) {
+            witness.step_ends(&self.simulation, &report);
+        }
         Ok(report)
+    }
+
+    /// Sets who sees the steps of the model, or nobody; returns who did so before. Copies of the model have none.
+    pub fn set_witness(&mut self, witness: Option<Box<dyn Witness>>) -> Option<Box<dyn Witness>> {
+        std::mem::replace(&mut self.attendance.0, witness)
+    }
+
+    /// Who sees the steps of the model.
+    pub fn witness(&self) -> Option<&dyn Witness> {
+        self.attendance.0.as_deref()
+    }
+
+    /// The state from which the model goes on: where it stands between two points of the grid and no input has changed,
+    /// the last point of the grid.
+    pub fn onward(&self) -> &State {
+        saved::kept(self.grid.as_deref(), self.progress).unwrap_or(self.simulation.state())
     }
 
     /// Result of `look` at the model on the threads of steps or, by its second argument, on the caller's alone, as in a

@@ -13,6 +13,11 @@ use super::{Aims, Cosimulation, CosimulationError, Forces, Input, PortKind, Prog
 /// The state of a model at one instant, with the inputs that hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
+    /// State from which the model goes on; the first in its bytes, as in those of other keepers.
+    state: State,
+    /// State in which the model stands, when that is between two points of the grid and it goes on from the first.
+    between: Option<Box<State>>,
+    progress: Progress,
     /// Hash of the model.
     hash: String,
     /// The same without the values of parameters.
@@ -23,26 +28,24 @@ pub struct Saved {
     parameters: Vec<f64>,
     aims: Aims,
     ways: Ways,
-    state: State,
-    grid: Option<Box<State>>,
-    progress: Progress,
     /// Whether it is of a model of this process, or was found to be as if it were; bytes from elsewhere are not.
     #[serde(skip)]
     checked: bool,
 }
 
 impl Saved {
-    pub(super) fn of(simulation: &Simulation, hash: &str, parameters: &Parameters) -> Self {
+    /// The first state of a model.
+    pub(super) fn first(simulation: &Simulation, hash: &str, parameters: &Parameters) -> Self {
         Self {
+            state: simulation.state().clone(),
+            between: None,
+            progress: Progress::default(),
             hash: hash.to_owned(),
             family: parameters.family.clone(),
             dt: simulation.model().dt,
             parameters: parameters.values.clone(),
             aims: Aims::new(),
             ways: Ways::new(),
-            state: simulation.state().clone(),
-            grid: None,
-            progress: Progress::default(),
             checked: true,
         }
     }
@@ -51,17 +54,32 @@ impl Saved {
     pub(super) fn overwrite(&mut self, state: &State, grid: Option<&State>, progress: Progress, parameters: &[f64]) {
         self.parameters.clear();
         self.parameters.extend_from_slice(parameters);
-        self.state.clone_from(state);
-        overwrite(&mut self.grid, grid);
+        let grid = kept(grid, progress);
+        self.state.clone_from(grid.unwrap_or(state));
+        overwrite(&mut self.between, grid.map(|_| state));
         self.progress = progress;
     }
 
     /// Copies the state into a model, into the memory of its own, and returns where it stood.
     fn give(&self, simulation: &mut Simulation, grid: &mut Option<Box<State>>) -> Progress {
-        simulation.return_to(&self.state);
-        overwrite(grid, self.grid.as_deref());
+        simulation.return_to(self.between.as_deref().unwrap_or(&self.state));
+        overwrite(grid, self.between.as_ref().map(|_| &self.state));
         self.progress
     }
+
+    /// The state of a run as a host of the same model takes it up: without a clock of its own, at rest at time 0, and
+    /// with inputs that hold.
+    fn of_run(state: State, model: &Cosimulation) -> Self {
+        let progress = Progress::of(&state, model);
+        let parameters = model.parameters_in(state.stage as usize);
+        let first = Self::first(&model.simulation, &model.hash, &model.parameters);
+        Self { state, progress, parameters, checked: false, ..first }
+    }
+}
+
+/// The last point of the grid, unless the model goes on from where it stands, because an input has changed.
+pub(super) fn kept(grid: Option<&State>, progress: Progress) -> Option<&State> {
+    grid.filter(|_| !progress.changed)
 }
 
 /// Takes over a state of the same model, into the memory of the old one where there was one.
@@ -75,9 +93,20 @@ fn overwrite(own: &mut Option<Box<State>>, new: Option<&State>) {
 impl Cosimulation {
     /// The state now.
     pub fn save(&self) -> Saved {
-        let saved = Saved::of(&self.simulation, &self.hash, &self.parameters);
-        let (aims, ways, grid) = (self.aims.clone(), self.ways.clone(), self.grid.clone());
-        Saved { aims, ways, grid, progress: self.progress, ..saved }
+        let (here, grid) = (self.simulation.state(), kept(self.grid.as_deref(), self.progress));
+        let (state, between) = (grid.unwrap_or(here).clone(), grid.map(|_| Box::new(here.clone())));
+        Saved {
+            state,
+            between,
+            progress: self.progress,
+            hash: self.hash.clone(),
+            family: self.parameters.family.clone(),
+            dt: self.internal_step(),
+            parameters: self.parameters.values.clone(),
+            aims: self.aims.clone(),
+            ways: self.ways.clone(),
+            checked: true,
+        }
     }
 
     /// Goes back to a saved state of this model. The numbers of one that [`Cosimulation::save`] made, or that was
@@ -129,7 +158,7 @@ impl Cosimulation {
         }
         let mut adopted =
             Saved { hash: self.hash.clone(), parameters: self.parameters.values.clone(), ..saved.clone() };
-        for state in std::iter::once(&mut adopted.state).chain(adopted.grid.as_deref_mut()) {
+        for state in std::iter::once(&mut adopted.state).chain(adopted.between.as_deref_mut()) {
             if state.stage as usize >= self.case().stages.len() {
                 return self.check(&mut adopted).map(|()| adopted);
             }
@@ -161,7 +190,7 @@ impl Cosimulation {
     }
 
     fn check_saved(&self, saved: &Saved) -> Result<(), Unfit> {
-        let Saved { hash: _, family: _, dt: _, parameters, aims, ways, state, grid, progress, checked: _ } = saved;
+        let Saved { state, between, progress, hash: _, family: _, dt: _, parameters, aims, ways, checked: _ } = saved;
         fit::length("parameters", parameters.len(), self.parameters.list.len())?;
         for (parameter, &value) in self.parameters.list.iter().zip(parameters) {
             let (low, high) = (parameter.low.min(parameter.start), parameter.high.max(parameter.start));
@@ -192,11 +221,11 @@ impl Cosimulation {
             fit::number("forces: stored", stored, fit::FORCE)?;
             fit::number("forces: in_bolts", in_bolts, fit::FORCE)?;
         }
-        let Some(grid) = grid else { return Ok(()) };
-        let named = |unfit: Unfit| Unfit { what: format!("grid: {}", unfit.what), ..unfit };
-        self.simulation.check(grid).map_err(named)?;
-        fit::at_most("grid: the difference of steps", grid.step.abs_diff(state.step), 0)?;
-        fit::between("grid: part", grid.part, 0.0, state.part)
+        let Some(between) = between else { return Ok(()) };
+        let named = |unfit: Unfit| Unfit { what: format!("between: {}", unfit.what), ..unfit };
+        self.simulation.check(between).map_err(named)?;
+        fit::at_most("between: the difference of steps", between.step.abs_diff(state.step), 0)?;
+        fit::between("between: part", between.part, state.part, self.internal_step())
     }
 
     /// Keeps the state that a failure goes back to.
@@ -214,6 +243,13 @@ impl Cosimulation {
         self.aims.clone_from(&self.backup.aims);
         self.ways.clone_from(&self.backup.ways);
         self.progress = self.backup.give(&mut self.simulation, &mut self.grid);
+        self.show_return();
+    }
+
+    fn show_return(&mut self) {
+        if let Some(witness) = &mut self.attendance.0 {
+            witness.returns(&self.simulation);
+        }
     }
 
     /// Goes back to a saved state.
@@ -223,6 +259,7 @@ impl Cosimulation {
         self.aims.clone_from(&saved.aims);
         self.ways.clone_from(&saved.ways);
         self.progress = saved.give(&mut self.simulation, &mut self.grid);
+        self.show_return();
     }
 
     /// Bytes of a saved state: magic, versions, model hash, length, checksum, payload (see [`bytes`]).
@@ -234,14 +271,24 @@ impl Cosimulation {
         Ok(bytes::encode(Keeper::Model, saved, &self.hash)?)
     }
 
-    /// The saved state in bytes that [`Cosimulation::serialize`] made, in this process or another.
+    /// The saved state in bytes that [`Cosimulation::serialize`] made, in this process or another, or in those of a
+    /// checkpoint of `enmm run`. A run in a static stage before the first dynamic one is a model that has not been
+    /// started, and goes on there; of a later one the first dynamic stage begins at time 0, and inputs are held.
     ///
     /// # Errors
     /// The bytes are damaged, or of another model or version, or hold what cannot be (see [`Cosimulation::check`]).
     pub fn deserialize(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
-        let mut saved = bytes::decode(Keeper::Model, bytes, &self.hash)?;
+        let mut saved = self.decoded(bytes)?;
         self.check(&mut saved)?;
         Ok(saved)
+    }
+
+    /// What bytes of this model hold, unchecked.
+    fn decoded(&self, bytes: &[u8]) -> Result<Saved, BytesError> {
+        match bytes::head(Keeper::Model, bytes, &self.hash)?.keeper {
+            Keeper::Run => Ok(Saved::of_run(bytes::decode_state(Keeper::Model, bytes, &self.hash)?, self)),
+            Keeper::Model | Keeper::Fmu => bytes::decode(Keeper::Model, bytes, &self.hash),
+        }
     }
 
     /// The saved state in bytes, as one of this model, whose parameters it then has: that of a model that differs from
@@ -251,7 +298,9 @@ impl Cosimulation {
     /// As [`Cosimulation::deserialize`] and [`Cosimulation::restore_keeping_parameters`].
     pub fn deserialize_keeping_parameters(&self, bytes: &[u8]) -> Result<Saved, CosimulationError> {
         let hash = bytes::case_hash(Keeper::Model, bytes)?;
-        let mut saved = self.adopt(&bytes::decode(Keeper::Model, bytes, &hash)?)?;
+        let mut saved =
+            if hash == self.hash { self.decoded(bytes)? } else { bytes::decode(Keeper::Model, bytes, &hash)? };
+        saved = self.adopt(&saved)?;
         self.check(&mut saved)?;
         Ok(saved)
     }

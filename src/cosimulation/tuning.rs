@@ -138,19 +138,26 @@ impl Cosimulation {
         }
     }
 
-    /// Gives a state of this model, or of one that differs from it in parameters alone, the parameters that hold here.
-    pub(super) fn give_parameters(&self, state: &mut State) {
-        let (case, Parameters { list, values, .. }) = (self.case(), &self.parameters);
-        let reached = initial_stages(case) + 1..=state.stage as usize;
+    /// Values that the parameters have in a stage of the case.
+    pub(super) fn parameters_in(&self, stage: usize) -> Vec<f64> {
+        let case = self.case();
+        let reached = initial_stages(case) + 1..=stage.min(case.stages.len() - 1);
         let of_case = |parameter: &Parameter| {
             let last = reached.clone().rev().find_map(|stage| parameter.in_stage(case, stage));
             last.unwrap_or(parameter.start)
         };
-        let others = list.iter().zip(values).filter(|(parameter, value)| {
-            parameter.is_tunable && (parameter.is_switch() || value.to_bits() != of_case(parameter).to_bits())
+        self.parameters.list.iter().map(of_case).collect()
+    }
+
+    /// Gives a state of this model, or of one that differs from it in parameters alone, the parameters that hold here.
+    pub(super) fn give_parameters(&self, state: &mut State) {
+        let (case, Parameters { list, values, .. }) = (self.case(), &self.parameters);
+        let of_case = self.parameters_in(state.stage as usize);
+        let others = list.iter().zip(values).zip(&of_case).filter(|((parameter, value), of_case)| {
+            parameter.is_tunable && (parameter.is_switch() || value.to_bits() != of_case.to_bits())
         });
-        let tunables =
-            others.flat_map(|(parameter, value)| parameter.tunables(case).into_iter().map(move |what| (what, *value)));
+        let tunables = others
+            .flat_map(|((parameter, value), _)| parameter.tunables(case).into_iter().map(move |what| (what, *value)));
         self.simulation.give_parameters(state, tunables);
     }
 }

@@ -1,22 +1,25 @@
 //! Bytes of saved states: a payload in a container that says of which case it is and whether it is whole.
 //!
 //! Layout, little-endian: magic `ENMMCKPT`; format version u32; [`Keeper`] u32; engine version and case hash, each as
-//! u32 length and text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard.
+//! u32 length and text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard. Every keeper
+//! begins it with the state from which the model goes on, so that others can take that alone.
 
 use std::cmp::Ordering;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::State;
+
 const MAGIC: &[u8; 8] = b"ENMMCKPT";
-const FORMAT: u32 = 14;
+const FORMAT: u32 = 15;
 const TEXT_MAX: usize = 256;
 /// Bytes of length and checksum.
 const SUMMARY: usize = 12;
 /// Most bytes before the payload.
 pub const HEAD_MAX: usize = MAGIC.len() + 8 + 2 * (4 + TEXT_MAX) + SUMMARY;
 
-/// Who saved a state and can go on from it: each keeps more than the state itself.
+/// Who saved a state: each keeps more than the state itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keeper {
     /// `enmm run`, with the progress of its stages and outputs.
@@ -30,11 +33,16 @@ pub enum Keeper {
 impl Keeper {
     const ALL: [Self; 3] = [Self::Run, Self::Model, Self::Fmu];
 
+    /// Whether it can take the state of another: values of an FMU are known to that FMU alone.
+    fn takes(self, other: Self) -> bool {
+        (self == Self::Fmu) == (other == Self::Fmu)
+    }
+
     /// Its word in messages, and how its states are continued.
     fn told(self) -> [&'static str; 2] {
         match self {
-            Self::Run => ["a run", "`enmm run --resume` continues it"],
-            Self::Model => ["a library model", "a model of the library continues it, by C, C++, Python or Rust"],
+            Self::Run => ["a run", "`enmm run --resume` and models of the library continue it"],
+            Self::Model => ["a library model", "models of the library and `enmm run --resume` continue it"],
             Self::Fmu => ["an FMU", "an instance of the same FMU continues it"],
         }
     }
@@ -44,7 +52,9 @@ impl Keeper {
 #[derive(Debug, thiserror::Error)]
 pub enum BytesError {
     /// It is something else.
-    #[error("this is no checkpoint of enmm: give a checkpoint.enmm that a run has written")]
+    #[error(
+        "this is no saved state of enmm: give the checkpoint.enmm of a run, or bytes of a state that a model has saved"
+    )]
     Foreign,
     /// It ends too early.
     #[error("the checkpoint is truncated after {0} bytes: use an older one, or start a new run")]
@@ -109,21 +119,43 @@ pub fn encode<T: Serialize>(keeper: Keeper, payload: &T, case_hash: &str) -> Res
 /// # Errors
 /// When the bytes are no whole checkpoint of this engine, keeper and case.
 pub fn decode<T: DeserializeOwned>(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<T, BytesError> {
-    let head = head(keeper, bytes, case_hash)?;
+    let (found, payload) = open(keeper, bytes, case_hash)?;
+    if found != keeper {
+        return Err(BytesError::OtherKeeper { found, own: keeper });
+    }
+    match taken(payload)? {
+        (value, []) => Ok(value),
+        _ => Err(BytesError::Damaged("it holds something else".to_owned())),
+    }
+}
+
+/// Returns the state with which a checkpoint of the case with this hash begins, which a keeper takes from another.
+///
+/// # Errors
+/// When the bytes are no whole checkpoint of this engine and case that the keeper takes.
+pub fn decode_state(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<State, BytesError> {
+    Ok(taken(open(keeper, bytes, case_hash)?.1)?.0)
+}
+
+/// Keeper and payload of a checkpoint of the case with this hash.
+fn open<'a>(own: Keeper, bytes: &'a [u8], case_hash: &str) -> Result<(Keeper, &'a [u8]), BytesError> {
+    let head = head(own, bytes, case_hash)?;
     head.check_size(bytes.len() as u64)?;
     let payload = &bytes[head.size..];
     if crc32fast::hash(payload) != head.checksum {
         return Err(BytesError::Damaged("its checksum does not match".to_owned()));
     }
-    match postcard::take_from_bytes(payload) {
-        Ok((value, [])) => Ok(value),
-        Ok(_) => Err(BytesError::Damaged("it holds something else".to_owned())),
-        Err(error) => Err(BytesError::Damaged(error.to_string())),
-    }
+    Ok((head.keeper, payload))
+}
+
+fn taken<T: DeserializeOwned>(payload: &[u8]) -> Result<(T, &[u8]), BytesError> {
+    postcard::take_from_bytes(payload).map_err(|error| BytesError::Damaged(error.to_string()))
 }
 
 /// Header in front of a payload.
 pub struct Head {
+    /// Who saved the state.
+    pub keeper: Keeper,
     /// Bytes of the head itself.
     size: usize,
     /// Bytes of the payload.
@@ -149,8 +181,8 @@ impl Head {
 /// Reads the head at the beginning of some bytes, of which the first [`HEAD_MAX`] are enough.
 ///
 /// # Errors
-/// When they do not begin a checkpoint of this engine, by this keeper and of the case with this hash.
-pub fn head(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<Head, BytesError> {
+/// When they do not begin a checkpoint of this engine and of the case with this hash, whose state `own` can take.
+pub fn head(own: Keeper, bytes: &[u8], case_hash: &str) -> Result<Head, BytesError> {
     let mut reader = Reader { bytes, at: 0 };
     if reader.take(MAGIC.len()).map_err(|_| BytesError::Foreign)? != MAGIC {
         return Err(BytesError::Foreign);
@@ -164,10 +196,10 @@ pub fn head(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<Head, Bytes
     if engine != engine_version() {
         return Err(version(format!("enmm {engine}"), format!("enmm {}", engine_version())));
     }
-    match Keeper::ALL.get(found as usize) {
-        None => return Err(BytesError::Damaged("it was saved by nothing that is known".to_owned())),
-        Some(&found) if found != keeper => return Err(BytesError::OtherKeeper { found, own: keeper }),
-        Some(_) => {}
+    let keeper = Keeper::ALL.get(found as usize).copied();
+    let keeper = keeper.ok_or_else(|| BytesError::Damaged("it was saved by nothing that is known".to_owned()))?;
+    if !own.takes(keeper) {
+        return Err(BytesError::OtherKeeper { found: keeper, own });
     }
     let found = reader.text()?;
     if found != case_hash {
@@ -175,7 +207,7 @@ pub fn head(keeper: Keeper, bytes: &[u8], case_hash: &str) -> Result<Head, Bytes
     }
     let length = u64::from_le_bytes(reader.array()?);
     let checksum = reader.number()?;
-    Ok(Head { size: reader.at, length, checksum })
+    Ok(Head { keeper, size: reader.at, length, checksum })
 }
 
 /// The case hash that the head of some bytes has.

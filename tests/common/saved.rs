@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 /// A saved state as its bytes hold it.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Whole {
+    pub state: State,
+    pub between: Option<Box<State>>,
+    pub progress: Progress,
     pub hash: String,
     pub family: String,
     pub dt: f64,
     pub parameters: Vec<f64>,
     pub aims: BTreeMap<usize, enmm::geometry::Vector>,
     pub ways: BTreeMap<Input, Interpolation>,
-    pub state: State,
-    pub grid: Option<Box<State>>,
-    pub progress: Progress,
 }
 
 /// Where the model stands beside its state.

@@ -54,7 +54,7 @@ fn a_checkpoint_of_another_case_or_none_is_refused_before_anything_is_written() 
     fs::write(place.path("other.toml"), case(0.03)).expect("written");
     let resume = |case: &str, file: &str| place.enmm(&["run", case, "-o", "second", "--resume", file]);
     resume("other.toml", "first/checkpoint.enmm").assert_bad_input(&["first/checkpoint.enmm: ", "of case "]);
-    resume("case.toml", "case.toml").assert_bad_input(&["no checkpoint"]);
+    resume("case.toml", "case.toml").assert_bad_input(&["no saved state of enmm"]);
     resume("case.toml", "absent.enmm").assert_bad_input(&["absent.enmm: cannot read"]);
     let whole = fs::read(place.path("first/checkpoint.enmm")).expect("readable");
     fs::write(place.path("half.enmm"), &whole[..whole.len() / 2]).expect("written");

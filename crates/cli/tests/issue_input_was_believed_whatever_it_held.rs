@@ -3,6 +3,8 @@
 
 use std::fs;
 
+use enmm::model::bytes::Keeper;
+
 use crate::support::{Outcome, Place};
 
 /// Tangent of the plane on which the slope slides, from the face to the top.
@@ -244,16 +246,19 @@ fn states_of_another_keeper_were_damaged() {
     let place = Place::with(&crate::support::case(0.05));
     place.answers(0, &["run", "case.toml", "-o", "out"]);
     let loaded = enmm_io::load_case(&place.path("case.toml")).expect("a case");
-    let model = loaded.cosimulation().expect("a model");
+    let mut model = loaded.cosimulation().expect("a model");
     let of_run = fs::read(place.path("out/checkpoint.enmm")).expect("a checkpoint");
-    let error = model.deserialize(&of_run).expect_err("refused").to_string();
-    let message = "this is the state of a run, not of a library model: `enmm run --resume` continues it";
-    assert!(error.ends_with(message), "{error}");
-    let of_model = model.serialize(&model.save()).expect("bytes");
-    assert!(model.deserialize(&of_model).is_ok());
-    fs::write(place.path("model.enmm"), of_model).expect("written");
-    let answer = place.enmm(&["run", "case.toml", "-o", "out", "--resume", "model.enmm"]);
-    answer.assert_bad_input(&["this is the state of a library model, not of a run: a model of the library"]);
+    let saved = model.deserialize(&of_run).expect("the state of the run");
+    model.restore(&saved).expect("of the same case");
+    fs::write(place.path("model.enmm"), model.serialize(&saved).expect("bytes")).expect("written");
+    let answer = place.answers(0, &["run", "case.toml", "-o", "out", "--resume", "model.enmm"]);
+    assert!(answer.stderr.contains("goes on from the state of a host"), "{answer:?}");
+    let of_fmu = enmm::model::bytes::encode(Keeper::Fmu, &0u8, "of an FMU").expect("bytes");
+    let error = model.deserialize(&of_fmu).expect_err("refused").to_string();
+    assert_eq!(error, "this is the state of an FMU, not of a library model: an instance of the same FMU continues it");
+    fs::write(place.path("fmu.enmm"), of_fmu).expect("written");
+    let answer = place.enmm(&["run", "case.toml", "-o", "out", "--resume", "fmu.enmm"]);
+    answer.assert_bad_input(&["this is the state of an FMU, not of a run"]);
 }
 
 /// A set that fills a region of its own ends there on purpose; sets and bolts have their names.

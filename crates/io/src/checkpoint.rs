@@ -4,10 +4,9 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use super::files::{open_input, write_atomic};
-use enmm::model::bytes::{BytesError, HEAD_MAX, Keeper, decode, encode, head};
+use enmm::model::bytes::{BytesError, HEAD_MAX, Keeper, encode, head};
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -28,19 +27,21 @@ pub fn save<T: Serialize>(path: &Path, payload: &T, case_hash: &str) -> io::Resu
     write_atomic(path, &encode(Keeper::Run, payload, case_hash).map_err(io::Error::other)?)
 }
 
-/// Reads a checkpoint; what is no regular file, or has the wrong head or size, is refused before it is read.
+/// Reads the bytes of a state that a run can take; what is no regular file, or has the wrong head or size, is refused
+/// before it is read.
 ///
 /// # Errors
 /// When the file cannot be read, or is no whole checkpoint of this engine and case.
-pub fn load<T: DeserializeOwned>(path: &Path, case_hash: &str) -> Result<T, CheckpointError> {
+pub fn read(path: &Path, case_hash: &str) -> Result<(Keeper, Vec<u8>), CheckpointError> {
     let mut file = open_input(path).map_err(CheckpointError::Unreadable)?;
     let length = file.metadata().map_err(CheckpointError::Unreadable)?.len();
     let mut bytes = Vec::new();
     file.by_ref().take(HEAD_MAX as u64).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
-    head(Keeper::Run, &bytes, case_hash)?.check_size(length)?;
+    let head = head(Keeper::Run, &bytes, case_hash)?;
+    head.check_size(length)?;
     bytes
         .try_reserve_exact((length as usize).saturating_sub(bytes.len()))
         .map_err(|error| CheckpointError::Unreadable(io::Error::new(io::ErrorKind::OutOfMemory, error.to_string())))?;
     file.take(length).read_to_end(&mut bytes).map_err(CheckpointError::Unreadable)?;
-    Ok(decode(Keeper::Run, &bytes, case_hash)?)
+    Ok((head.keeper, bytes))
 }

@@ -18,12 +18,14 @@ mod history;
 mod legend;
 mod model;
 mod raster;
+#[cfg(feature = "searches")]
 mod reduction;
 mod sheet;
 mod signs;
 mod slope;
 mod stage;
 mod stage_axis;
+#[cfg(feature = "searches")]
 mod stereonet;
 mod svg;
 
@@ -41,12 +43,14 @@ pub use displacement::displacement_picture;
 pub use histogram::{Fit, histogram_picture};
 pub use history::{Series, history_picture};
 pub use model::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_picture};
+#[cfg(feature = "searches")]
 pub use reduction::{failure_picture, trials_picture};
 pub use signs::Held;
 pub use stage::{
     StageEnd, joint_stress_pictures, joints_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
 pub use stage_axis::StageStart;
+#[cfg(feature = "searches")]
 pub use stereonet::{Projection, Stereonet};
 
 /// A finished picture.

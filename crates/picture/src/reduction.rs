@@ -7,7 +7,7 @@ use super::colour::{ACCENT, Colour, GREY, INK, LINES, PALE, WHITE};
 use super::displacement::draw_length;
 use super::model::{draw_tensions, draw_water};
 use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, text_width};
-use super::signs::{draw_bolt, draw_shape, push_arrow};
+use super::signs::{draw_bolt, push_arrow};
 use super::slope::{
     BELOW_FRAME, LEFT, LINE_HEIGHT, MARGIN, TOP, WIDTH, draw_absence, draw_block_outlines, draw_filled, draw_title,
 };
@@ -303,4 +303,17 @@ fn draw_failure_legend(sheet: &mut Sheet, view: &View, y: f64, [fails, bolts]: [
         draw_bolt(sheet, [[x, y - 5.0], [x + 34.0, y - 5.0]], Style::line(ACCENT, 2.6));
         sheet.text([x + 44.0, y], "bolt with its tension per metre of slope", style);
     }
+}
+
+/// Draws an equal-sided shape on a corner, or a disc without corners, of a radius (px) about `centre`.
+fn draw_shape(sheet: &mut Sheet, centre: Pixel, corners: usize, radius: f64, style: Style) {
+    if corners == 0 {
+        sheet.circle(centre, radius, style);
+        return;
+    }
+    let corner = |k: usize| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / corners as f64);
+        [centre[0] + radius * sin, centre[1] - radius * cos]
+    };
+    sheet.path(Path::closed((0..corners).map(corner)), style);
 }

@@ -106,19 +106,6 @@ pub fn draw_bolt(sheet: &mut Sheet, [[x, y], [u, v]]: [Pixel; 2], style: Style) 
     sheet.path(path, style);
 }
 
-/// Draws an equal-sided shape on a corner, or a disc without corners, of a radius (px) about `centre`.
-pub fn draw_shape(sheet: &mut Sheet, centre: Pixel, corners: usize, radius: f64, style: Style) {
-    if corners == 0 {
-        sheet.circle(centre, radius, style);
-        return;
-    }
-    let corner = |k: usize| {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / corners as f64);
-        [centre[0] + radius * sin, centre[1] - radius * cos]
-    };
-    sheet.path(Path::closed((0..corners).map(corner)), style);
-}
-
 /// Draws the triangle that stands on the surface of water.
 pub fn draw_water_mark(sheet: &mut Sheet, [x, y]: Pixel) {
     let corners = [[x, y - 1.0], [x - 6.0, y - 11.0], [x + 6.0, y - 11.0]];

@@ -25,6 +25,18 @@ pub struct FilmWriter {
     rows: Vec<Vec<f64>>,
     /// Stage of the last frame.
     stage: Option<u32>,
+    held: Option<Held>,
+}
+
+/// Chunks that are kept back, with the stage of the film before them.
+#[derive(Debug)]
+struct Held {
+    bytes: Vec<u8>,
+    /// Number of the rows that were gathered before.
+    before: usize,
+    /// These rows, once a chunk that is kept back has them.
+    rows: Option<Vec<Vec<f64>>>,
+    stage: Option<u32>,
 }
 
 impl FilmWriter {
@@ -56,17 +68,14 @@ impl FilmWriter {
             return Self::create(path, head, outlines);
         }
         let (_, shape) = checked(head, outlines)?;
-        let shortened = temporary_beside(path);
-        let stage = keep(path, &shortened, until).inspect_err(|_| forget(&shortened))?;
-        std::fs::rename(&shortened, path).map_err(FilmError::at(path))?;
-        let file = OpenOptions::new().append(true).open(path).map_err(FilmError::at(path))?;
+        let (file, stage) = shorten(path, until)?;
         Ok(Self { stage, ..Self::of(path, file, shape, head) })
     }
 
     fn of(path: &Path, file: File, shape: Shape, head: &Head) -> Self {
         let columns = head.columns.iter().map(|column| column.name.clone()).collect();
         let (monitors, bolts) = (head.monitors.len(), head.bolts.len());
-        Self { path: path.to_owned(), file, shape, columns, monitors, bolts, rows: Vec::new(), stage: None }
+        Self { path: path.to_owned(), file, shape, columns, monitors, bolts, rows: Vec::new(), stage: None, held: None }
     }
 
     /// Appends a frame, behind the rows that were gathered before.
@@ -107,6 +116,46 @@ impl FilmWriter {
         self.append(Kind::Note, time, &bytes)
     }
 
+    /// Keeps back what follows until [`FilmWriter::release`] writes it or [`FilmWriter::discard`] forgets it.
+    pub fn hold(&mut self) {
+        self.held = Some(Held { bytes: Vec::new(), before: self.rows.len(), rows: None, stage: self.stage });
+    }
+
+    /// Bytes that are kept back.
+    pub fn held(&self) -> usize {
+        self.held.as_ref().map_or(0, |held| held.bytes.len())
+    }
+
+    /// Writes what has been kept back; what follows is no longer kept back.
+    ///
+    /// # Errors
+    /// When the file system refuses it.
+    pub fn release(&mut self) -> Result<(), FilmError> {
+        let Some(held) = self.held.take() else { return Ok(()) };
+        self.file.write_all(&held.bytes).map_err(FilmError::at(&self.path))
+    }
+
+    /// Forgets what has been kept back; what follows is no longer kept back.
+    pub fn discard(&mut self) {
+        let Some(held) = self.held.take() else { return };
+        self.stage = held.stage;
+        match held.rows {
+            Some(rows) => self.rows = rows,
+            None => self.rows.truncate(held.before),
+        }
+    }
+
+    /// Removes frames, rows and notes later than `until` (s).
+    ///
+    /// # Errors
+    /// As [`FilmWriter::resume`].
+    pub fn cut(&mut self, until: f64) -> Result<(), FilmError> {
+        self.release()?;
+        self.flush()?;
+        (self.file, self.stage) = shorten(&self.path, until)?;
+        Ok(())
+    }
+
     /// Writes the rows that are gathered.
     ///
     /// # Errors
@@ -120,12 +169,22 @@ impl FilmWriter {
             let numbers: Vec<f32> = self.rows.iter().map(|row| row[column] as f32).collect();
             push_planes(&numbers, Width::Full, &mut bytes);
         }
-        self.rows.clear();
+        let mut rows = std::mem::take(&mut self.rows);
+        if let Some(held) = self.held.as_mut().filter(|held| held.rows.is_none()) {
+            rows.truncate(held.before);
+            held.rows = Some(rows);
+        }
         self.append(Kind::Rows, time, &bytes)
     }
 
     fn append(&mut self, kind: Kind, time: f64, body: &[u8]) -> Result<(), FilmError> {
-        let written = chunk::pack(kind, time, body).and_then(|bytes| self.file.write_all(&bytes));
+        let written = chunk::pack(kind, time, body).and_then(|bytes| match &mut self.held {
+            Some(held) => {
+                held.bytes.extend(bytes);
+                Ok(())
+            }
+            None => self.file.write_all(&bytes),
+        });
         written.map_err(FilmError::at(&self.path))
     }
 }
@@ -158,6 +217,15 @@ pub fn temporary_beside(path: &Path) -> PathBuf {
 /// Removes a file that is not finished; one that cannot be removed is left for the next run to sweep.
 pub fn forget(temporary: &Path) {
     let _ = std::fs::remove_file(temporary);
+}
+
+/// Takes frames, rows and notes later than a time (s) out of a film; returns its file, and the stage of its last frame.
+fn shorten(path: &Path, until: f64) -> Result<(File, Option<u32>), FilmError> {
+    let shortened = temporary_beside(path);
+    let stage = keep(path, &shortened, until).inspect_err(|_| forget(&shortened))?;
+    std::fs::rename(&shortened, path).map_err(FilmError::at(path))?;
+    let file = OpenOptions::new().append(true).open(path).map_err(FilmError::at(path))?;
+    Ok((file, stage))
 }
 
 /// Copies the chunks of a film up to a time (s); returns the stage of its last frame.

@@ -13,7 +13,7 @@ use enmm_io::files::{at_path, write_atomic};
 use enmm_stability::limit_analysis::continuum::{Bracket, Motion, bracket as bracket_of};
 use enmm_stability::limit_analysis::{self, Bound, BoundError, Collapse, Factor};
 
-use crate::input::input_record;
+use enmm_record::input_record;
 
 /// Why there is no bound.
 #[derive(Debug, thiserror::Error)]

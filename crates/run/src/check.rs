@@ -11,8 +11,8 @@ use enmm::model::tables::Workspace;
 use enmm::model::{Simulation, State};
 use enmm_stability::corners::weak_corners;
 
-use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::rock_mass::{RockMass, rock_masses};
+use enmm_record::changes::{CrumbRecord, TraceEndRecord};
 
 /// Share of a full cover's mass below which a cover counts as small.
 const SMALL_COVER: f64 = 1e-3;

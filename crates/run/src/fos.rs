@@ -10,17 +10,17 @@ use std::{fs, io};
 use serde_json::{Value, json};
 
 use super::bound::{bound_record, bracket_record, factor};
-use super::folder::Folder;
 pub use super::found::{Found, remedy};
-use super::input::input_record;
 use super::mechanism_page::write_fos_page;
-use super::run::has_run;
-use super::summary::BoltRecord;
 use enmm::engine_version;
 use enmm::model::Mechanism;
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
+use enmm_record::Folder;
+use enmm_record::input_record;
+use enmm_record::results::has_run;
+use enmm_record::summary::BoltRecord;
 use enmm_report::PAGE;
 use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, HELD, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,

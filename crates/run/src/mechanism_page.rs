@@ -6,12 +6,12 @@ use std::path::Path;
 
 use enmm_report::{Axis, FILM, Fact, MOTION, Marked, Note, Trial as Row, TrialTable};
 
-use crate::film::{Film, Opening, numbers};
 use crate::found::{Found, remedy};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm_io::LoadedCase;
 use enmm_io::files::temporary_beside;
+use enmm_record::film::{Film, Opening, numbers};
 use enmm_stability::limit_analysis::continuum::{Bracket, Motion};
 use enmm_stability::limit_analysis::{self, Bound, Way};
 use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};

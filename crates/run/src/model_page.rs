@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use enmm_report::{Axis, FILM, MOTION, PAGE};
 
-use crate::film::{Film, Opening};
 use enmm::model::Simulation;
 use enmm_io::LoadedCase;
+use enmm_record::film::{Film, Opening};
 
 /// Writes the page of a model into a directory, with a film beside it, and returns its path.
 ///

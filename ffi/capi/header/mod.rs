@@ -83,8 +83,17 @@ fn plain() -> Result<String, String> {
     let builder = Builder::new().with_config(config);
     let mut builder = enumerations.into_iter().fold(builder, Builder::include_item);
     let sources = root().join("ffi/capi/src");
-    let files =
-        ["types", "abi/library", "abi/model", "abi/inputs", "abi/parameters", "abi/names", "abi/observe", "abi/state"];
+    let files = [
+        "types",
+        "abi/library",
+        "abi/model",
+        "abi/inputs",
+        "abi/parameters",
+        "abi/names",
+        "abi/observe",
+        "abi/state",
+        "abi/record",
+    ];
     for file in files {
         builder = builder.with_src(sources.join(file).with_extension("rs"));
     }

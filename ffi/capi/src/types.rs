@@ -46,7 +46,7 @@ pub enum enmm_status {
     ENMM_INVALID_ARGUMENT = 4,
     /// The case cannot be used; the message has file, line and key.
     ENMM_INVALID_CASE = 5,
-    /// A file cannot be read.
+    /// A file cannot be read or written.
     ENMM_FILE_ERROR = 6,
     /// A communication step does not begin at the time of the model.
     ENMM_WRONG_TIME = 7,

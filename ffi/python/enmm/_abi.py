@@ -424,5 +424,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_state_serialize": (c_int32, [c_void_p, c_void_p, c_char_p, c_size_t, POINTER(c_size_t)]),
     "enmm_state_deserialize": (c_int32, [c_void_p, c_char_p, c_size_t, POINTER(c_void_p)]),
     "enmm_state_deserialize_with": (c_int32, [c_void_p, c_char_p, c_size_t, c_uint32, POINTER(c_void_p)]),
+    "enmm_record": (c_int32, [c_void_p, c_char_p]),
+    "enmm_write_frame": (c_int32, [c_void_p]),
+    "enmm_end_record": (c_int32, [c_void_p]),
 }
 """Result and arguments of every function."""

@@ -101,6 +101,28 @@ class Source(NamedTuple):
         return model
 
 
+class Recording:
+    """Results of a model that go to the folder `directory`; the end of its `with` writes the summary."""
+
+    def __init__(self, model: "Model", directory: Path) -> None:
+        self._model, self.directory = model, directory
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def write_frame(self) -> None:
+        """As `Model.write_frame`."""
+        self._model.write_frame()
+
+    def close(self) -> None:
+        """As `Model.end_record`; does nothing when the model was closed, which has ended the recording too."""
+        if self._model.is_alive:
+            self._model.end_record()
+
+
 class Model(Closing):
     """A jointed rock mass that a host drives through communication steps.
 
@@ -157,6 +179,11 @@ class Model(Closing):
         """Ends the model and gives its memory free. Closing again does nothing."""
         self._core.close()
 
+    @property
+    def is_alive(self) -> bool:
+        """Whether the model has not been closed."""
+        return bool(self._core.close.alive)
+
     def __reduce__(self) -> tuple[object, ...]:
         return _unpickled_model, (self._source, self.serialize(), self._threads)
 
@@ -166,7 +193,7 @@ class Model(Closing):
         return self._case._replace(parameters=tuple(self._parameters.built.items()))
 
     def __repr__(self) -> str:
-        if not self._core.close.alive:
+        if not self.is_alive:
             return f"<enmm.Model {self._source.name!r}, closed>"
         return f"<enmm.Model {self._source.name!r}: {self.block_count} blocks, t = {self.time:g} s>"
 
@@ -525,6 +552,39 @@ class Model(Closing):
         """Block at a place (m) now, the lowest id where blocks meet. Raises NotFoundError where no rock is."""
         return int(self._core.get("enmm_find_block_at", c_uint32, number(x), number(y)))
 
+    # Results.
+
+    def record(self, folder: str | os.PathLike[str]) -> Recording:
+        """Records results into a folder from now on, as `enmm run` writes them: history, film, frames, at the end
+        pictures, checkpoint, page and summary.
+
+        Call it before `start` to have the initial equilibrium. It ends with the `with` of what it returns, with
+        `end_record`, or with the model. Rows and frames are due at the times of the case; what a step brings is written
+        when the next one begins, and a return to an earlier state removes what is later. No result changes by it.
+
+        Raises CaseFileError when the folder cannot be written, another process writes there, or a result would replace
+        an input of the case; InvalidArgumentError when the model is recorded already. When a file cannot be written
+        later, steps go on, the log gets the error and `end_record` raises it.
+        """
+        self._core.call("enmm_record", text("folder", folder))
+        return Recording(self, Path(folder))
+
+    def write_frame(self) -> None:
+        """Writes a row of the history, a frame of the film and frames for ParaView of this instant at once.
+
+        A host that repeats steps calls it when a step stands. Raises InvalidArgumentError when nothing is recorded, and
+        CaseFileError.
+        """
+        self._core.call("enmm_write_frame")
+
+    def end_record(self) -> None:
+        """Ends the recording with pictures, checkpoint, page and summary.
+
+        Raises InvalidArgumentError when nothing is recorded, and CaseFileError when a file could not be written, now or
+        before; the recording has ended in any case.
+        """
+        self._core.call("enmm_end_record")
+
     # Saved states.
 
     def save(self) -> State:
@@ -555,7 +615,7 @@ class Model(Closing):
         return _serialized(self._core, state)
 
     def deserialize(self, data: bytes | bytearray | memoryview, *, keep_parameters: bool = False) -> State:
-        """Makes a state of bytes that `serialize` gave, in this process or another.
+        """Makes a state of bytes that `serialize` gave, in this process or another, or of a `checkpoint.enmm` of a run.
 
         With `keep_parameters` the bytes may be of a model that differs in values of parameters; the state then has
         those of this model. Raises StateError for bytes that are damaged, or of another case or version.

@@ -20,7 +20,7 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "g
 
 /// Those of the interfaces: the C library by ctypes, FMUs by FMPy, results, coupling. They need the usual packages
 /// alone.
-const USUAL: [&str; 11] = [
+const USUAL: [&str; 12] = [
     "python_tests/test_coupling.py",
     "python_tests/test_ctypes.py",
     "python_tests/test_ctypes_life.py",
@@ -31,6 +31,7 @@ const USUAL: [&str; 11] = [
     "python_tests/test_fmu_standard.py",
     "python_tests/test_fmu_states.py",
     "python_tests/test_parameters.py",
+    "python_tests/test_recorded.py",
     "python_tests/test_results.py",
 ];
 

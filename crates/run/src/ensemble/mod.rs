@@ -18,8 +18,8 @@ use enmm_ensemble::{Row, StoreError, draw, wilson};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_stability::strength_reduction::MechanismOptions;
 
-use crate::folder::{Folder, STORE, check_output, is_result};
 use crate::fos::FosOptions;
+use enmm_record::{Folder, STORE, check_output, is_result};
 
 use answers::Answers;
 

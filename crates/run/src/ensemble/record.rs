@@ -13,7 +13,7 @@ use enmm_picture::{Fit, histogram_picture, three_digits};
 use serde_json::{Value as Json, json};
 
 use super::{CONFIDENCE, EnsembleError, EnsembleOptions, columns};
-use crate::input::input_record;
+use enmm_record::input_record;
 
 /// Shares of the samples for which quantiles are given.
 const SHARES: [f64; 3] = [0.05, 0.5, 0.95];

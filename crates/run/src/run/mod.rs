@@ -6,21 +6,16 @@ mod concurrency;
 mod driver;
 mod load_at_once;
 mod outlook;
-mod results;
-mod rows;
 
 use std::io;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use super::summary::Summary;
 use enmm::model::BuildStage;
 use enmm_io::CaseError;
 use enmm_io::LoadedCase;
 use enmm_io::checkpoint::CheckpointError;
-
-pub use results::draw_checked;
-pub(crate) use results::has_run;
+use enmm_record::Summary;
 
 /// How to run a case.
 #[derive(Debug, Default)]

@@ -7,4 +7,5 @@ pub mod names;
 pub mod observe;
 pub mod parameters;
 mod pointers;
+pub mod record;
 pub mod state;

@@ -82,8 +82,8 @@ pub unsafe extern "C" fn enmm_check_case(toml: *const c_char, base_dir: *const c
     })
 }
 
-/// Ends a model and frees its memory. NULL and dead handles do nothing. When another thread is in a call with the
-/// model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
+/// Ends a model and frees its memory; ends its recording, if there is one. NULL and dead handles do nothing. When
+/// another thread is in a call with the model, that call ends normally; later ones return ENMM_DEAD_HANDLE.
 ///
 /// It never waits. After it returns, the log callback gets no further message on the calling thread. When another
 /// thread is in a call with the model, the callback may still run or start there, and its `user` must not be freed
@@ -202,8 +202,8 @@ pub unsafe extern "C" fn enmm_get_stop_time(model: *mut enmm_model, time: *mut f
 }
 
 /// Sets the number of threads that steps use, 1 to 1024; 1, the thread of the call, at the creation. Results do not
-/// depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has none
-/// of the threads: a model that it uses starts the same number again at its next step.
+/// depend on it, not even in the last bit. Acts from the next step on. A process that is forked from this one has
+/// none of the threads: a model that it uses starts the same number again at its next step.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for another number, or more than the system grants; in a forked process enmm_do_step
 /// and enmm_start can return it as well.
@@ -215,10 +215,10 @@ pub extern "C" fn enmm_set_threads(model: *mut enmm_model, threads: usize) -> en
 /// Sets the callback for messages of this model; NULL (as at creation) discards them. The first callback gets the
 /// warnings of the case at once; later messages are delivered at the end of the calls that they belong to.
 ///
-/// `user` is passed to the callback unchanged. After this function has replaced the callback, `user` is no longer used,
-/// except by a message that is just being delivered. That happens only when a callback replaces itself: while another
-/// thread delivers, this function returns ENMM_BUSY. Messages that have not been delivered yet go to the new callback.
-/// For the end of the model see enmm_destroy.
+/// `user` is passed to the callback unchanged. After this function has replaced the callback, `user` is no longer
+/// used, except by a message that is just being delivered. That happens only when a callback replaces itself: while
+/// another thread delivers, this function returns ENMM_BUSY. Messages that have not been delivered yet go to the new
+/// callback. For the end of the model see enmm_destroy.
 ///
 /// Errors: ENMM_BUSY when another thread is in a call with the model, messages of the call included.
 ///

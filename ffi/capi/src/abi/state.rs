@@ -79,7 +79,8 @@ pub unsafe extern "C" fn enmm_state_serialize(
     })
 }
 
-/// Makes a state from bytes that enmm_state_serialize wrote, in this process or another.
+/// Makes a state from bytes that enmm_state_serialize wrote, in this process or another, or from those of a
+/// `checkpoint.enmm` of `enmm run` on the same case.
 ///
 /// `*out` gets the handle, which enmm_state_free frees, or NULL on failure.
 ///

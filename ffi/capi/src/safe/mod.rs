@@ -10,4 +10,5 @@ pub mod model;
 pub mod names;
 pub mod observe;
 pub mod parameters;
+pub mod record;
 pub mod state;

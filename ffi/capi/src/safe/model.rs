@@ -93,6 +93,10 @@ pub struct Model {
     interrupt: Interrupt,
     /// Whether the slope had failed at the end of the last search for the initial equilibrium.
     has_failed_at_start: bool,
+    /// The case, which records of results show.
+    pub(super) loaded: LoadedCase,
+    /// Whether the host has heard that recording has ended by itself.
+    pub(super) lost_record: bool,
 }
 
 /// Messages of one call, and where they go.
@@ -130,7 +134,7 @@ impl Mail {
 /// # Errors
 /// The file cannot be read, or the case cannot be used.
 pub fn create_from_file(path: &str) -> Result<usize, Failure> {
-    create(&load_case(Path::new(path))?)
+    create(load_case(Path::new(path))?)
 }
 
 /// Builds a model from the text of a case and returns its handle.
@@ -138,7 +142,7 @@ pub fn create_from_file(path: &str) -> Result<usize, Failure> {
 /// # Errors
 /// The case cannot be used.
 pub fn create_from_string(toml: &str, base_dir: &str) -> Result<usize, Failure> {
-    create(&parse_case(toml, "case", Path::new(base_dir))?)
+    create(parse_case(toml, "case", Path::new(base_dir))?)
 }
 
 /// Reads a case from text without a model of it; `base_dir` is where the files are that it names.
@@ -150,7 +154,7 @@ pub fn check_case(toml: &str, base_dir: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
+fn create(loaded: LoadedCase) -> Result<usize, Failure> {
     let mut inner = loaded.cosimulation()?;
     let interrupt = Interrupt::default();
     inner.set_watch(Some(interrupt.watch(None)));
@@ -162,6 +166,8 @@ fn create(loaded: &LoadedCase) -> Result<usize, Failure> {
         viewed: Vec::new(),
         interrupt: interrupt.clone(),
         has_failed_at_start: false,
+        loaded,
+        lost_record: false,
     };
     MODELS.insert(Shared { model: Mutex::new(model), owner: AtomicUsize::new(0), interrupt })
 }
@@ -200,6 +206,7 @@ impl Model {
             self.log_failure(failure);
         }
         self.log_start(was_started);
+        self.log_record();
         result
     }
 
@@ -230,6 +237,7 @@ impl Model {
             Ok(info) => self.log_step(info),
             Err(failure) => self.log_failure(failure),
         }
+        self.log_record();
         let info = result?;
         Ok(enmm_step_info {
             struct_size: size_of::<enmm_step_info>(),
@@ -266,6 +274,14 @@ impl Model {
             _ => enmm_log_level::ENMM_LOG_ERROR,
         };
         self.log.write(level, || failure.message.clone());
+    }
+
+    /// Logs once that recording has ended by itself.
+    fn log_record(&mut self) {
+        if let (Some(fault), false) = (self.record_fault(), self.lost_record) {
+            self.lost_record = true;
+            self.log.write(enmm_log_level::ENMM_LOG_ERROR, || fault);
+        }
     }
 
     /// Logs the initial equilibrium when this call has computed it.

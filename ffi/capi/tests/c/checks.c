@@ -433,6 +433,15 @@ struct warnings {
     int overlaps, others;
 };
 
+/* Recording that cannot be: without a folder, without a recording, of no model. */
+static void no_records(enmm_model *model)
+{
+    CHECK(enmm_record(model, NULL) == ENMM_NULL_ARGUMENT);
+    CHECK(enmm_record(model, "") == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_write_frame(model) == ENMM_INVALID_ARGUMENT && enmm_end_record(model) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_record(NULL, "folder") == ENMM_NULL_ARGUMENT && enmm_write_frame(NULL) == ENMM_NULL_ARGUMENT);
+}
+
 static void on_warning(void *user, enmm_log_level level, const char *message)
 {
     struct warnings *warnings = user;
@@ -537,6 +546,7 @@ int main(int argc, char **argv)
     events_and_states(model);
     failures(model);
     other_cases(model);
+    no_records(model);
     enmm_destroy(model);
     turncoats(argv[1]);
     overlaps();

@@ -15,6 +15,7 @@ use super::{Experiment, Failure, Instance, same_bits};
 /// All that an instance needs to go on with the same bits, in this process or another.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Whole {
+    model: Saved,
     phase: u16,
     start: f64,
     stop: Option<f64>,
@@ -22,7 +23,6 @@ struct Whole {
     values: Vec<f64>,
     /// Parameters of the model that `model` is a state of.
     built: Vec<f64>,
-    model: Saved,
 }
 
 #[derive(Debug)]

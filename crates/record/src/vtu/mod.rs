@@ -293,6 +293,8 @@ pub struct PvdWriter {
     directory: PathBuf,
     parts: Vec<Part>,
     frames: Vec<Frame>,
+    /// Frames in the list before those that are kept back.
+    held_from: Option<usize>,
 }
 
 /// A frame of the collection: its time (s) and its number in the file names.
@@ -309,7 +311,7 @@ impl PvdWriter {
     /// Whatever the file system refuses, with the path in the message.
     pub fn new(directory: &Path, parts: Vec<Part>) -> io::Result<Self> {
         make_frames(directory)?;
-        let writer = Self { directory: directory.to_owned(), parts, frames: Vec::new() };
+        let writer = Self { directory: directory.to_owned(), parts, frames: Vec::new(), held_from: None };
         writer.write_collection()?;
         Ok(writer)
     }
@@ -328,7 +330,7 @@ impl PvdWriter {
         make_frames(directory)?;
         let mut frames = listed_frames(&text).map_err(at_path(&path))?;
         frames.retain(|frame| frame.time <= keep_until_time);
-        let writer = Self { directory: directory.to_owned(), parts, frames };
+        let writer = Self { directory: directory.to_owned(), parts, frames, held_from: None };
         writer.write_collection()?;
         Ok(writer)
     }
@@ -343,6 +345,40 @@ impl PvdWriter {
             part.write(snapshot, beside, &self.directory.join(part.file(number)))?;
         }
         self.frames.push(Frame { time: snapshot.time, number });
+        if self.held_from.is_some() { Ok(()) } else { self.write_collection() }
+    }
+
+    /// Keeps the frames that follow out of the collection until they are released or discarded.
+    pub fn hold(&mut self) {
+        self.held_from = Some(self.frames.len());
+    }
+
+    /// Lists the frames that have been kept back; those that follow are no longer kept back.
+    ///
+    /// # Errors
+    /// Whatever the file system refuses, with the path in the message.
+    pub fn release(&mut self) -> io::Result<()> {
+        match self.held_from.take() {
+            Some(listed) if listed < self.frames.len() => self.write_collection(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Forgets the frames that have been kept back, whose files are written over; those that follow are no longer kept
+    /// back.
+    pub fn discard(&mut self) {
+        if let Some(listed) = self.held_from.take() {
+            self.frames.truncate(listed);
+        }
+    }
+
+    /// Takes frames later than `keep_until_time` (s) out of the collection.
+    ///
+    /// # Errors
+    /// Whatever the file system refuses, with the path in the message.
+    pub fn cut(&mut self, keep_until_time: f64) -> io::Result<()> {
+        self.held_from = None;
+        self.frames.retain(|frame| frame.time <= keep_until_time);
         self.write_collection()
     }
 

@@ -67,8 +67,11 @@ impl CrumbRecord {
 }
 
 impl Film {
-    /// Tables of ends and blocks that the build has changed.
-    pub(crate) fn note_changes(&mut self, simulation: &Simulation) -> io::Result<()> {
+    /// Notes tables of ends and blocks that the build has changed.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn note_changes(&mut self, simulation: &Simulation) -> io::Result<()> {
         let built = simulation.built();
         let ends = TraceEndRecord::all(built).into_iter().map(|end| {
             let TraceEndRecord { joint, place: [x, y], gap_mm, line, change } = end;

@@ -10,8 +10,10 @@ use enmm_io::files::{at_path, write_atomic};
 #[derive(Debug)]
 pub struct HistoryWriter {
     path: PathBuf,
-    columns: usize,
+    header: Vec<String>,
     csv: csv::Writer<File>,
+    /// Rows that are kept back.
+    held: Option<Vec<Vec<f64>>>,
 }
 
 impl HistoryWriter {
@@ -22,9 +24,7 @@ impl HistoryWriter {
     /// # Errors
     /// Whatever the file system refuses, with the path in the message.
     pub fn new(path: &Path, columns: &[(impl AsRef<str>, impl AsRef<str>)]) -> io::Result<Self> {
-        let header = encode([header(columns)]).map_err(at_path(path))?;
-        write_atomic(path, &header)?;
-        Self::at_end(path, columns.len())
+        Self::begin(path, header(columns))
     }
 
     /// Continues the file of an interrupted run: rows later than `keep_until_time` (s) are dropped, then rows follow.
@@ -39,13 +39,32 @@ impl HistoryWriter {
         columns: &[(impl AsRef<str>, impl AsRef<str>)],
         keep_until_time: f64,
     ) -> io::Result<Self> {
+        Self::shorten(path, header(columns), keep_until_time)
+    }
+
+    /// Drops rows later than `keep_until_time` (s).
+    ///
+    /// # Errors
+    /// As [`HistoryWriter::open_for_append`].
+    pub fn cut(&mut self, keep_until_time: f64) -> io::Result<()> {
+        self.release()?;
+        *self = Self::shorten(&self.path, std::mem::take(&mut self.header), keep_until_time)?;
+        Ok(())
+    }
+
+    fn begin(path: &Path, header: Vec<String>) -> io::Result<Self> {
+        write_atomic(path, &encode([&header]).map_err(at_path(path))?)?;
+        Self::at_end(path, header)
+    }
+
+    fn shorten(path: &Path, header: Vec<String>, keep_until_time: f64) -> io::Result<Self> {
         let text = match fs::read_to_string(path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return Self::new(path, columns),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Self::begin(path, header),
             read => read.map_err(at_path(path))?,
         };
-        let kept = rows_until(&text, &header(columns), keep_until_time).map_err(at_path(path))?;
+        let kept = rows_until(&text, &header, keep_until_time).map_err(at_path(path))?;
         write_atomic(path, &kept)?;
-        Self::at_end(path, columns.len())
+        Self::at_end(path, header)
     }
 
     /// Appends one row: a value per column, the time (s) first, in digits that read back to the same number.
@@ -53,12 +72,34 @@ impl HistoryWriter {
     /// # Errors
     /// `InvalidInput` if the number of values is not the number of columns; else what the file system refuses.
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        if values.len() != self.columns {
-            let message = format!("a row of {} values in a history of {} columns", values.len(), self.columns);
+        if values.len() != self.header.len() {
+            let message = format!("a row of {} values in a history of {} columns", values.len(), self.header.len());
             return Err(at_path(&self.path)(io::Error::new(ErrorKind::InvalidInput, message)));
+        }
+        if let Some(held) = &mut self.held {
+            held.push(values.to_vec());
+            return Ok(());
         }
         let written = self.csv.write_record(values.iter().map(|value| format!("{value:?}"))).map_err(io::Error::from);
         written.and_then(|()| self.csv.flush()).map_err(at_path(&self.path))
+    }
+
+    /// Keeps back the rows that follow until they are released or discarded.
+    pub fn hold(&mut self) {
+        self.held = Some(Vec::new());
+    }
+
+    /// Writes the rows that have been kept back; those that follow are no longer kept back.
+    ///
+    /// # Errors
+    /// As [`HistoryWriter::row`].
+    pub fn release(&mut self) -> io::Result<()> {
+        self.held.take().unwrap_or_default().iter().try_for_each(|row| self.row(row))
+    }
+
+    /// Forgets the rows that have been kept back; those that follow are no longer kept back.
+    pub fn discard(&mut self) {
+        self.held = None;
     }
 
     /// Fails when the file is no longer in its place: rows then went where nobody finds them.
@@ -69,9 +110,9 @@ impl HistoryWriter {
         fs::metadata(&self.path).map(|_| ()).map_err(at_path(&self.path))
     }
 
-    fn at_end(path: &Path, columns: usize) -> io::Result<Self> {
+    fn at_end(path: &Path, header: Vec<String>) -> io::Result<Self> {
         let file = OpenOptions::new().append(true).open(path).map_err(at_path(path))?;
-        Ok(Self { path: path.to_owned(), columns, csv: csv::Writer::from_writer(file) })
+        Ok(Self { path: path.to_owned(), header, csv: csv::Writer::from_writer(file), held: None })
     }
 }
 

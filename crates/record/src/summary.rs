@@ -55,6 +55,9 @@ pub struct Summary {
     pub verdict: String,
     /// Numerical failure, if any.
     pub failure: Option<FailureRecord>,
+    /// Communication steps of a coupled run; not there for one without a host.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coupled: Option<CoupledRecord>,
     /// Size of the model.
     pub model: ModelCounts,
     /// Stages that have begun.
@@ -126,6 +129,15 @@ impl From<&StepError> for FailureRecord {
         let place = [error.position.x, error.position.y];
         Self { block: error.block, place, time: error.time, cause: error.failure.to_string() }
     }
+}
+
+/// How a host drove a coupled run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct CoupledRecord {
+    /// Communication steps that were recorded, those that were taken back included.
+    pub communication_steps: u64,
+    /// Times that the model went back to an earlier state.
+    pub returns: u64,
 }
 
 /// Size of a model.
@@ -212,6 +224,30 @@ pub struct StageRecord {
 }
 
 impl StageRecord {
+    /// A stage of the past of a state that no run has recorded: its times alone are known.
+    pub(crate) fn unseen(simulation: &Simulation, state: &State, stage: usize) -> Self {
+        let (of_case, starts) = (&simulation.case().stages[stage], &state.stage_starts);
+        let start = starts.get(stage).copied().unwrap_or_default();
+        let time = starts.get(stage + 1).map_or(0.0, |end| end - start);
+        Self {
+            name: of_case.name.clone(),
+            kind: of_case.kind,
+            start,
+            time,
+            steps: (time / simulation.model().dt).round() as u64,
+            converged: None,
+            ended_early: false,
+            displacement: f64::NAN,
+            failure: None,
+            wall_seconds: None,
+            unbalanced: f64::NAN,
+            kinetic_energy: f64::NAN,
+            potential_released: f64::NAN,
+            unsettled: 0,
+            penetration_max: f64::NAN,
+        }
+    }
+
     /// How it ended, in words.
     pub fn outcome(&self) -> String {
         match (&self.failure, self.converged) {
@@ -348,12 +384,13 @@ impl WallSeconds {
 }
 
 /// Record that only the driver of a run has.
-pub(super) struct RunRecord<'a> {
+pub(crate) struct RunRecord<'a> {
     pub case_file: &'a str,
     pub case_hash: &'a str,
     pub settings: &'a [String],
     pub status: RunStatus,
     pub failure: Option<&'a StepError>,
+    pub coupled: Option<CoupledRecord>,
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
     pub failed: bool,
@@ -366,7 +403,7 @@ pub(super) struct RunRecord<'a> {
 }
 
 impl Summary {
-    pub(super) fn new(simulation: &Simulation, record: RunRecord) -> Self {
+    pub(crate) fn new(simulation: &Simulation, record: RunRecord) -> Self {
         let (model, state) = (simulation.model(), simulation.state());
         let counters = &state.counters;
         Self {
@@ -379,6 +416,7 @@ impl Summary {
             failed: record.failed,
             verdict: record.verdict,
             failure: record.failure.map(FailureRecord::from),
+            coupled: record.coupled,
             model: ModelCounts::of(simulation),
             stages: record.stages,
             permanent: record.permanent,

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use enmm_io::files::write_atomic;
-use enmm_run::history::HistoryWriter;
+use enmm_record::history::HistoryWriter;
 
 const COLUMNS: [(&str, &str); 3] = [("time", "s"), ("crest_ux", "m"), ("open_contacts", "")];
 const HEADER: &str = "time [s],crest_ux [m],open_contacts\n";

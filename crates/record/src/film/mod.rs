@@ -189,6 +189,37 @@ impl Film {
         self.writer.note(time, note).map_err(refused)
     }
 
+    /// Keeps back what follows until it is released or discarded.
+    pub fn hold(&mut self) {
+        self.writer.hold();
+    }
+
+    /// Bytes that are kept back.
+    pub fn held(&self) -> usize {
+        self.writer.held()
+    }
+
+    /// Writes what has been kept back.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn release(&mut self) -> io::Result<()> {
+        self.writer.release().map_err(refused)
+    }
+
+    /// Forgets what has been kept back.
+    pub fn discard(&mut self) {
+        self.writer.discard();
+    }
+
+    /// Removes frames, rows and notes later than a time (s).
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn cut(&mut self, until: f64) -> io::Result<()> {
+        self.writer.cut(until).map_err(refused)
+    }
+
     /// Ends the film and writes its page.
     ///
     /// # Errors

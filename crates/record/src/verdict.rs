@@ -36,7 +36,10 @@ fn unfailed(stages: &[StageRecord], status: RunStatus) -> String {
         format!("largest displacement {displacement} m")
     };
     let restless = stages.iter().find(|stage| stage.converged == Some(false));
-    let farthest = stages.iter().max_by(|a, b| a.displacement.total_cmp(&b.displacement));
+    let farthest = stages
+        .iter()
+        .filter(|stage| stage.displacement.is_finite())
+        .max_by(|a, b| a.displacement.total_cmp(&b.displacement));
     match (status, restless, farthest) {
         (RunStatus::Interrupted, ..) => "no verdict yet: the run was interrupted".to_owned(),
         (RunStatus::Failed, ..) => "no verdict: the run failed numerically".to_owned(),

@@ -101,7 +101,7 @@ impl Drop for Folder {
 }
 
 /// Makes the folder of frames in a folder of results, unless it is there.
-pub(crate) fn make_frames(directory: &Path) -> io::Result<()> {
+pub fn make_frames(directory: &Path) -> io::Result<()> {
     let frames = directory.join(FRAMES);
     match fs::create_dir(&frames) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),

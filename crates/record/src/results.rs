@@ -16,8 +16,8 @@ use enmm_picture::{
 };
 use enmm_report::FILM;
 
-use super::rows::{self, Histories};
 use crate::folder::{FRAMES, make_frames};
+use crate::rows::{self, Histories};
 use crate::vtu::PARTS;
 
 /// Kinds of pictures of the end of a stage, and with what the rest of their names begins.
