@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common::saved::Whole;
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::model::bytes::{Keeper, decode, encode};
+use enmm::model::bytes::{Keeper, checksum, decode, encode};
 use enmm::model::tables::{EdgeId, LawId, NodeId, SideId};
 use enmm_io::load_case;
 
@@ -87,7 +87,7 @@ fn what_no_state_can_have_is_refused_by_name() {
 fn forged(bytes: &[u8], start: usize, at: usize, by: u8) -> Vec<u8> {
     let mut forged = bytes.to_vec();
     forged[at] ^= by;
-    let checksum = crc32fast::hash(&forged[start..]);
+    let checksum = checksum(&forged[..start - 12], &forged[start..]);
     forged[start - 4..start].copy_from_slice(&checksum.to_le_bytes());
     forged
 }
@@ -96,8 +96,8 @@ fn forged(bytes: &[u8], start: usize, at: usize, by: u8) -> Vec<u8> {
 #[test]
 fn no_forged_byte_makes_a_model_panic() {
     let (model, bytes) = model();
-    let start =
-        (0..bytes.len()).find(|&k| k >= 4 && crc32fast::hash(&bytes[k..]).to_le_bytes() == bytes[k - 4..k] && k > 8);
+    let is_start = |&k: &usize| checksum(&bytes[..k - 12], &bytes[k..]).to_le_bytes() == bytes[k - 4..k];
+    let start = (12..bytes.len()).find(is_start);
     let start = start.expect("a payload");
     let mut taken = 0;
     for at in start..bytes.len() {

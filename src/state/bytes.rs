@@ -1,8 +1,9 @@
 //! Bytes of saved states: a payload in a container that says of which case it is and whether it is whole.
 //!
 //! Layout, little-endian: magic `ENMMCKPT`; format version u32; [`Keeper`] u32; engine version and case hash, each as
-//! u32 length and text; payload length u64; CRC-32 of the payload u32; payload. The payload is postcard. Every keeper
-//! begins it with the state from which the model goes on, so that others can take that alone.
+//! u32 length and text; payload length u64; CRC-32 u32 of all before the length and of the payload; payload. The
+//! payload is postcard. Every keeper begins it with the state from which the model goes on, so that others can take
+//! that alone.
 
 use std::cmp::Ordering;
 
@@ -110,7 +111,8 @@ pub fn encode<T: Serialize>(keeper: Keeper, payload: &T, case_hash: &str) -> Res
     let mut bytes = postcard::to_extend(payload, bytes).map_err(|error| BytesError::Damaged(error.to_string()))?;
     let (head, payload) = bytes.split_at_mut(summary + SUMMARY);
     head[summary..summary + 8].copy_from_slice(&(payload.len() as u64).to_le_bytes());
-    head[summary + 8..].copy_from_slice(&crc32fast::hash(payload).to_le_bytes());
+    let checksum = checksum(&head[..summary], payload);
+    head[summary + 8..].copy_from_slice(&checksum.to_le_bytes());
     Ok(bytes)
 }
 
@@ -142,10 +144,18 @@ fn open<'a>(own: Keeper, bytes: &'a [u8], case_hash: &str) -> Result<(Keeper, &'
     let head = head(own, bytes, case_hash)?;
     head.check_size(bytes.len() as u64)?;
     let payload = &bytes[head.size..];
-    if crc32fast::hash(payload) != head.checksum {
+    if checksum(&bytes[..head.size - SUMMARY], payload) != head.checksum {
         return Err(BytesError::Damaged("its checksum does not match".to_owned()));
     }
     Ok((head.keeper, payload))
+}
+
+/// CRC-32 of a head up to the length of its payload, and of the payload.
+pub fn checksum(head: &[u8], payload: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(head);
+    hasher.update(payload);
+    hasher.finalize()
 }
 
 fn taken<T: DeserializeOwned>(payload: &[u8]) -> Result<(T, &[u8]), BytesError> {
@@ -160,7 +170,7 @@ pub struct Head {
     size: usize,
     /// Bytes of the payload.
     length: u64,
-    /// CRC-32 of the payload.
+    /// CRC-32 of head and payload.
     checksum: u32,
 }
 

@@ -4,6 +4,7 @@
 use std::ffi::c_void;
 use std::ptr::null_mut;
 
+use engine::model::bytes::checksum;
 use enmm_fmi::log::Status;
 use enmm_fmi::table::{Type, Version};
 
@@ -121,8 +122,9 @@ impl Patient {
             trace.say(|| format!("damage {kind} at {at} of {n}"));
         }
         let mut forged = self.good[..self.payload - 12].to_vec();
+        let checksum = checksum(&forged, &payload);
         forged.extend((payload.len() as u64).to_le_bytes());
-        forged.extend(crc32fast::hash(&payload).to_le_bytes());
+        forged.extend(checksum.to_le_bytes());
         forged.extend(payload);
         forged
     }
@@ -219,7 +221,7 @@ impl Patient {
 
 /// Where the payload begins: behind its checksum.
 fn payload_of(bytes: &[u8]) -> Result<usize, String> {
-    let is_start = |&k: &usize| bytes[k - 4..k] == crc32fast::hash(&bytes[k..]).to_le_bytes();
+    let is_start = |&k: &usize| bytes[k - 4..k] == checksum(&bytes[..k - 12], &bytes[k..]).to_le_bytes();
     (12..bytes.len()).find(is_start).ok_or_else(|| "no payload".to_owned())
 }
 
