@@ -21,8 +21,10 @@ fn displacements(model: &Cosimulation) -> Vec<Vector> {
 fn column(more: &str) -> String {
     format!(
         "title = \"column\"\ndomain.outline = [[0, 0], [4, 0], [4, 8], [0, 8]]\n\
-         mesh = {{ size = 1.0, origin = [0.031, 0.017] }}\nrock.rock = {{ density = 2500, young = 1e8, poisson = 0.25 }}\n\
-         joint_law.joint.friction_deg = 20\nsolver.communication_step = 0.02\njoint = [{{ points = [[-1, 6.1], [5, 5.9]] }}]\n\
+         mesh = {{ size = 1.0, origin = [0.031, 0.017] }}\n\
+         rock.rock = {{ density = 2500, young = 1e8, poisson = 0.25 }}\n\
+         joint_law.joint.friction_deg = 20\nsolver.communication_step = 0.02\n\
+         joint = [{{ points = [[-1, 6.1], [5, 5.9]] }}]\n\
          stage = [{{ name = \"rest\", kind = \"static\", duration = 5.0 }},\n\
          {{ name = \"shake\", kind = \"dynamic\", duration = 2.0, damping = 0.02 }}]\n{more}"
     )
@@ -65,7 +67,8 @@ fn pushed(fix: &str, port: &str) -> String {
     format!(
         "title = \"pushed\"\ngravity = {{ x = 0.0, y = -9.81 }}\n\
          domain.outline = [[-2, -1], [6, -1], [6, 0], [-2, 0]]\ndomain.islands = [[[0, 0], [2, 0], [2, 1], [0, 1]]]\n\
-         mesh = {{ size = 0.6, origin = [0.031, 0.017] }}\nrock.rock = {{ density = 2500, young = 1e9, poisson = 0.25 }}\n\
+         mesh = {{ size = 0.6, origin = [0.031, 0.017] }}\n\
+         rock.rock = {{ density = 2500, young = 1e9, poisson = 0.25 }}\n\
          joint_law.joint.friction_deg = 20\n\
          fix = [{{ block = [4, -0.5] }}, {{ name = \"ram\", point = [1.0, 0.5], axes = \"x\"{fix} }}]\n{port}\
          stage = [{{ name = \"rest\", kind = \"static\", duration = 5.0 }},\n\

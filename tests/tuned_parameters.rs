@@ -1,5 +1,5 @@
-//! A host changes parameters by name: before the start as the case would have them, after it from the next step on; they
-//! are part of the state, and a state goes into a model that differs in parameters alone.
+//! A host changes parameters by name: before the start as the case would have them, after it from the next step on;
+//! they are part of the state, and a state goes into a model that differs in parameters alone.
 
 use std::path::Path;
 
@@ -162,5 +162,5 @@ fn a_host_takes_a_bolt_away() {
     assert!(ledger.residual().abs() < 0.01 * ledger.kinetic, "{ledger:?}");
     let mut bare = self::model(text);
     set(&mut bare, "bolt.bar.active", 0.0).unwrap();
-    assert_eq!(bare.case().bolts[0].active, false);
+    assert!(!bare.case().bolts[0].active);
 }

@@ -128,8 +128,8 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// Sets the particle velocity (m/s) of the wave that comes in through a quiet boundary, or the velocity with which the
-    /// supports of a fixity move. It acts in dynamic stages, beside what the case says.
+    /// Sets the particle velocity (m/s) of the wave that comes in through a quiet boundary, or the velocity with which
+    /// the supports of a fixity move. It acts in dynamic stages, beside what the case says.
     ///
     /// # Errors
     /// A value that is not finite or too large, or a port that does not exist or is of another kind.

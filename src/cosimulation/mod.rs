@@ -88,11 +88,11 @@ struct Progress {
     interpolation: Interpolation,
     /// End of the last communication step by the host's clock (s).
     host_time: f64,
-    /// What followed from the forces of the last internal step; none where nobody has looked.
+    /// Results of the forces of the last internal step; none where nobody has looked.
     forces: Option<Forces>,
 }
 
-/// What follows from the forces of an internal step, at its start.
+/// Results of the forces of an internal step, at its start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Forces {
     /// Net over applied force.
@@ -356,7 +356,8 @@ impl Cosimulation {
         self.ways.clear();
     }
 
-    /// How one input goes through a communication step from now on; that of a port of a block is the input of its block.
+    /// How one input goes through a communication step from now on; that of a port of a block is the input of its
+    /// block.
     ///
     /// # Errors
     /// A block or a port that does not exist.

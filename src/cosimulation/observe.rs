@@ -214,8 +214,8 @@ impl Cosimulation {
         }
     }
 
-    /// Energies and works (J/m) half an internal step ago, as the velocities are; what contacts, supports and bolts store
-    /// is that of the start of the last internal step.
+    /// Energies and works (J/m) half an internal step ago, as the velocities are; what contacts, supports and bolts
+    /// store is that of the start of the last internal step.
     pub fn energies(&self) -> Ledger {
         let mut ledger = self.simulation.energies_at_velocities();
         let forces = self.forces();
@@ -223,7 +223,7 @@ impl Cosimulation {
         ledger
     }
 
-    /// What followed from the forces of the last internal step, or will follow from those of the next one when the last
+    /// Results of the forces of the last internal step, or will follow from those of the next one when the last
     /// one was not looked at: before the start, and where a communication step was left before its end.
     fn forces(&self) -> Forces {
         self.progress.forces.unwrap_or_else(|| Forces::of(&self.look(Simulation::report_on)))

@@ -210,7 +210,7 @@ impl Parameter {
         matches!(self.place, Place::Bolt(_))
     }
 
-    /// What of a running model it changes; none of a fixed one.
+    /// Parts of a running model that it changes; none of a fixed one.
     pub(super) fn tunables(&self, case: &Case) -> Vec<Tunable> {
         match &self.place {
             Place::Law(name, key) => law_of(case, name).and_then(|law| key.tunable(law)).into_iter().collect(),

@@ -123,8 +123,8 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// Goes back to a saved state of this model, or of one that differs from it in values of parameters alone, and keeps
-    /// the parameters that hold now.
+    /// Goes back to a saved state of this model, or of one that differs from it in values of parameters alone, and
+    /// keeps the parameters that hold now.
     ///
     /// # Errors
     /// As [`Cosimulation::check`], but for the parameters; a model with another internal step.
@@ -283,7 +283,7 @@ impl Cosimulation {
         Ok(saved)
     }
 
-    /// What bytes of this model hold, unchecked.
+    /// The state in bytes of this model, unchecked.
     fn decoded(&self, bytes: &[u8]) -> Result<Saved, BytesError> {
         match bytes::head(Keeper::Model, bytes, &self.hash)?.keeper {
             Keeper::Run => Ok(Saved::of_run(bytes::decode_state(Keeper::Model, bytes, &self.hash)?, self)),

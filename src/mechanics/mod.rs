@@ -5,6 +5,7 @@ mod averaging;
 pub mod block_lanes;
 pub mod chunk;
 mod column;
+mod elastic;
 pub mod element_lanes;
 mod load;
 mod mass;
@@ -22,6 +23,7 @@ pub use crate::rock::{
 pub use averaging::{Averages, Averaging, RUN, fill_runs};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
+pub use elastic::ElasticElements;
 pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
 pub use mass::MassMatrix;
 pub use motion::{

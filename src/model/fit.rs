@@ -150,7 +150,7 @@ impl Simulation {
             damping: _,
             water_density: _,
             bolts: _,
-            drive: Drive { from, to, since, until, before: Course { end, rate }, moved },
+            drive,
             events,
             ledger,
             counters,
@@ -169,19 +169,24 @@ impl Simulation {
         self.check_neighbours(neighbours)?;
         self.check_found(found, contacts, neighbours)?;
         self.check_stages(state)?;
+        self.check_drive(drive)?;
+        self.check_events(events)?;
+        check_ledger(ledger)?;
+        check_counters(counters)
+    }
+
+    fn check_drive(&self, drive: &Drive) -> Fit {
+        let Drive { from, to, since, until, before: Course { end, rate }, moved } = drive;
         self.check_inputs("drive.from", from)?;
         self.check_inputs("drive.to", to)?;
-        self.check_events(events)?;
         number("drive.since", *since, TIME)?;
         number("drive.until", *until, TIME)?;
         number("drive.before.end", *end, TIME)?;
-        let ports = self.model().ports.len();
         for (what, list) in [("drive.before.rate", rate), ("drive.moved", moved)] {
-            length(what, list.len(), ports)?;
+            length(what, list.len(), self.model().ports.len())?;
             vectors(what, list, RATE)?;
         }
-        check_ledger(ledger)?;
-        check_counters(counters)
+        Ok(())
     }
 
     fn check_clock(&self, state: &State) -> Fit {

@@ -1,4 +1,4 @@
-//! What callers have looked at since the model last changed: each look is worked out once.
+//! Looks of callers at a model since it last changed: each is worked out once.
 
 use std::sync::OnceLock;
 

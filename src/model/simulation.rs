@@ -25,7 +25,7 @@ pub struct Simulation {
     pub(super) built: Built,
     pub(super) workspace: Workspace,
     pub(super) regime: Regime,
-    /// What callers have looked at since the model last changed.
+    /// Looks of callers since the model last changed.
     pub(super) looks: Looks,
     /// The blocks as the audit of overlaps cuts them, once it has had to compare two.
     audit: OnceLock<Audit>,
@@ -300,7 +300,8 @@ impl Simulation {
         })
     }
 
-    /// Energies and works (J/m) half an internal step ago, at the time of the velocities. What contacts, supports and bolts store follows from forces and is not in it.
+    /// Energies and works (J/m) half an internal step ago, at the time of the velocities. What contacts, supports and
+    /// bolts store follows from forces and is not in it.
     pub fn energies_at_velocities(&self) -> Ledger {
         let look = || step::energies_at_velocities(self.model(), self.state(), &self.workspace.mass_matrix);
         *self.looks.energies.get_or_init(look)

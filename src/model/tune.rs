@@ -35,8 +35,8 @@ impl Simulation {
         self.regime = self.regime_of(self.built.state.stage as usize);
     }
 
-    /// Gives a state of this model, or of one that differs from it in parameters alone, the parameters that the case has
-    /// in its stage, but for `others`.
+    /// Gives a state of this model, or of one that differs from it in parameters alone, the parameters that the case
+    /// has in its stage, but for `others`.
     pub(crate) fn give_parameters(&self, state: &mut State, others: impl Iterator<Item = (Tunable, f64)>) {
         (state.laws, state.law_switch) = self.laws_in(state.stage);
         (state.damping, state.water_density) = (None, self.model().water_density());

@@ -43,8 +43,8 @@ pub struct Inputs {
     pub port_traction: Vec<Vector>,
     /// Fluid pressure on the faces of each port (Pa), pushing into the rock.
     pub port_pressure: Vec<f64>,
-    /// Particle velocity (m/s) of the wave that comes in through each quiet boundary, or velocity of each fixity that is
-    /// moved.
+    /// Particle velocity (m/s) of the wave that comes in through each quiet boundary, or velocity of each fixity that
+    /// is moved.
     pub port_velocity: Vec<Vector>,
 }
 

@@ -4,13 +4,13 @@ use crate::state::State;
 
 use super::Regime;
 
-/// What is wanted of the start of a step.
+/// Results that are wanted of the start of a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Wanted {
     /// Nothing.
     #[default]
     Nothing,
-    /// What follows from the forces of the step alone: the unbalanced ratio, and the energy stored in contacts,
+    /// Results of the forces of the step alone: the unbalanced ratio, and the energy stored in contacts,
     /// supports and bolts.
     Forces,
     /// The whole report.
@@ -26,7 +26,7 @@ pub struct StepInterval {
     pub time: f64,
     /// Length (s).
     pub dt: f64,
-    /// What is wanted of the start.
+    /// Results that are wanted of the start.
     pub wanted: Wanted,
 }
 
@@ -43,7 +43,7 @@ pub struct Substep {
     pub kick: f64,
     /// When they act.
     pub window: Window,
-    /// What is wanted of the start.
+    /// Results that are wanted of the start.
     pub wanted: Wanted,
     /// Whether it keeps to the calling thread; the bits are the same.
     pub serial: bool,

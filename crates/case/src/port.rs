@@ -24,8 +24,8 @@ keys! {
         pub boundary: Option<[[f64; 2]; 2]> => PLACE,
         /// The joint faces on this segment (m): fluid pressure in, contact forces and slip out.
         pub joint: Option<[[f64; 2]; 2]> => PLACE,
-        /// The `[[quiet]]` boundary with this edge (m): particle velocity of the incoming wave in, velocity and traction
-        /// out.
+        /// The `[[quiet]]` boundary with this edge (m): particle velocity of the incoming wave in, velocity and
+        /// traction out.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub quiet: Option<[[f64; 2]; 2]> => PLACE,
         /// The `[[fix]]` of this name, of a point or an edge: its velocity or displacement in, its reaction out.

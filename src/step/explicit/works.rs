@@ -11,7 +11,8 @@ pub(super) fn extra(model: &Model, state: &State, step: &Substep) -> Vector {
     acceleration(model, state, step) - model.gravity
 }
 
-/// Works of contacts, supports and bolts, those of moved supports as of loads: each force by the mean of the velocities before and after it (Eq. 18).
+/// Works of contacts, supports and bolts, those of moved supports as of loads: each force by the mean of the velocities
+/// before and after it (Eq. 18).
 pub(super) fn contact_works(
     model: &Model,
     kick: f64,

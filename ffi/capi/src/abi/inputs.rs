@@ -129,8 +129,9 @@ pub extern "C" fn enmm_set_strength_factor(model: *mut enmm_model, f: f64) -> en
     with_model(model.addr(), |model| Ok(model.inner.set_strength_factor(f)?))
 }
 
-/// Sets the particle velocity (m/s, x to the right, y upwards) of the wave that comes in through a quiet boundary, or the
-/// velocity with which the supports of a held point or edge move. It acts in dynamic stages, beside what the case says.
+/// Sets the particle velocity (m/s, x to the right, y upwards) of the wave that comes in through a quiet boundary, or
+/// the velocity with which the supports of a held point or edge move. It acts in dynamic stages, beside what the case
+/// says.
 ///
 /// Acts at the same times as enmm_set_gravity; a linear way is taken exactly, its bends included.
 ///
@@ -141,8 +142,9 @@ pub extern "C" fn enmm_set_port_velocity(model: *mut enmm_model, port: u32, vx: 
     with_model(model.addr(), |model| Ok(model.inner.set_port_velocity(port as usize, Vector::new(vx, vy))?))
 }
 
-/// Sets the displacement (m) that the supports of a held point or edge have reached at the end of the next step, counted
-/// from their place before a host has moved them. They go there at a steady velocity and stay, unless it is set again.
+/// Sets the displacement (m) that the supports of a held point or edge have reached at the end of the next step,
+/// counted from their place before a host has moved them. They go there at a steady velocity and stay, unless it is set
+/// again.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is of another kind, or a value that is not finite or
 /// beyond 1e9 m.
@@ -151,8 +153,8 @@ pub extern "C" fn enmm_set_port_displacement(model: *mut enmm_model, port: u32, 
     with_model(model.addr(), |model| Ok(model.inner.set_port_displacement(port as usize, Vector::new(ux, uy))?))
 }
 
-/// Makes all inputs that have been set since the last step act at once from the start of the next one, even where inputs
-/// vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
+/// Makes all inputs that have been set since the last step act at once from the start of the next one, even where
+/// inputs vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_jump(model: *mut enmm_model) -> enmm_status {
     with_model(model.addr(), |model| {
@@ -162,8 +164,8 @@ pub extern "C" fn enmm_jump(model: *mut enmm_model) -> enmm_status {
 }
 
 /// Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block or the
-/// port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved states.
-/// enmm_set_interpolation sets that of all inputs.
+/// port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved
+/// states. enmm_set_interpolation sets that of all inputs.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for another number, or a block or port that does not exist.
 #[unsafe(no_mangle)]
@@ -176,9 +178,9 @@ pub extern "C" fn enmm_set_input_interpolation(
     with_model(model.addr(), |model| model.set_interpolation_of(input, index, mode))
 }
 
-/// Returns the inputs that are set now: gravity (m/s2, two numbers), acceleration of the base (m/s2, two numbers), height
-/// of the water (m; 0 without water), factor on the strength of joints. Pointers may be NULL where the value is of no
-/// interest.
+/// Returns the inputs that are set now: gravity (m/s2, two numbers), acceleration of the base (m/s2, two numbers),
+/// height of the water (m; 0 without water), factor on the strength of joints. Pointers may be NULL where the value is
+/// of no interest.
 ///
 /// # Safety
 /// Every pointer is as the head of the header states.
@@ -227,9 +229,9 @@ pub unsafe extern "C" fn enmm_get_block_force(
     })
 }
 
-/// Returns what is set on a port now: traction (Pa, two numbers), pressure (Pa) and velocity (m/s, two numbers); 0 where
-/// its kind takes no such input. For a block see enmm_get_block_force. Pointers may be NULL where the value is of no
-/// interest.
+/// Returns what is set on a port now: traction (Pa, two numbers), pressure (Pa) and velocity (m/s, two numbers); 0
+/// where its kind takes no such input. For a block see enmm_get_block_force. Pointers may be NULL where the value is of
+/// no interest.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a port that does not exist.
 ///

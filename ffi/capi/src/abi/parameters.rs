@@ -153,10 +153,10 @@ pub unsafe extern "C" fn enmm_get_parameter(model: *mut enmm_model, parameter: u
 
 /// Sets a parameter.
 ///
-/// Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of the
-/// value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it. Values
-/// are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made active is
-/// installed at its length of now with its pretension.
+/// Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of
+/// the value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it.
+/// Values are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made
+/// active is installed at its length of now with its pretension.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a parameter that does not exist, a value out of its range, or one that is fixed
 /// after the start; ENMM_INVALID_CASE when no model can be built with the value. Nothing has changed then.

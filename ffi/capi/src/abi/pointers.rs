@@ -118,8 +118,8 @@ pub unsafe fn check_struct<T: Growing>(out: *const T) -> Outcome {
 /// Writes structures and their number, or the number alone; the size of the first is the stride.
 ///
 /// # Safety
-/// `out` is NULL or points to `capacity` structures as large as the first one's `struct_size` says, `written` is NULL or
-/// points to a number.
+/// `out` is NULL or points to `capacity` structures as large as the first one's `struct_size` says, `written` is NULL
+/// or points to a number.
 pub unsafe fn fill_structs<T: Growing>(items: &[T], out: *mut T, capacity: usize, written: *mut usize) -> Outcome {
     // SAFETY: promised by the caller.
     unsafe { fill_made(items.len(), || items.iter().copied(), out, capacity, written) }

@@ -1,11 +1,11 @@
 //! Inputs that the façade does not know in the form that hosts give them.
 
-use engine::cosimulation::{Input, Interpolation, PortKind};
+use engine::cosimulation::{Input, PortKind};
 use engine::geometry::Vector;
 
 use super::failure::{Failure, Outcome};
-use super::model::Model;
-use crate::types::{enmm_input, enmm_interpolation};
+use super::model::{Model, interpolation};
+use crate::types::enmm_input;
 
 impl Model {
     /// Sets force and moment of several blocks, or of none; `loads` holds Fx, Fy and M of each block of `ids`.
@@ -73,19 +73,5 @@ impl Model {
         let (inputs, port) = (self.inner.inputs(), port as usize);
         let [traction, velocity] = [inputs.port_traction[port], inputs.port_velocity[port]].map(|v| [v.x, v.y]);
         Ok((traction, inputs.port_pressure[port], velocity))
-    }
-}
-
-/// The way that a number of C stands for.
-///
-/// # Errors
-/// Another number.
-pub fn interpolation(mode: i32) -> Result<Interpolation, Failure> {
-    let hold = enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32;
-    let linear = enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32;
-    match mode {
-        _ if mode == hold => Ok(Interpolation::Hold),
-        _ if mode == linear => Ok(Interpolation::Linear),
-        _ => Err(Failure::invalid(format!("mode: is {mode}, must be {hold} (hold) or {linear} (linear)"))),
     }
 }

@@ -11,7 +11,6 @@ use enmm_io::{LoadedCase, load_case, parse_case};
 use super::control::{Interrupt, Progress};
 use super::failure::{Failure, Outcome};
 use super::handles::Table;
-use super::inputs::interpolation;
 use crate::numbers::enmm_block_state;
 use crate::types::{enmm_interpolation, enmm_log_level, enmm_start_info, enmm_status, enmm_step_info};
 
@@ -362,6 +361,20 @@ impl Model {
         let mode = interpolation(mode)?;
         self.inner.set_interpolation(mode);
         Ok(())
+    }
+}
+
+/// The way that a number of C stands for.
+///
+/// # Errors
+/// Another number.
+pub fn interpolation(mode: i32) -> Result<Interpolation, Failure> {
+    let hold = enmm_interpolation::ENMM_INTERPOLATION_HOLD as i32;
+    let linear = enmm_interpolation::ENMM_INTERPOLATION_LINEAR as i32;
+    match mode {
+        _ if mode == hold => Ok(Interpolation::Hold),
+        _ if mode == linear => Ok(Interpolation::Linear),
+        _ => Err(Failure::invalid(format!("mode: is {mode}, must be {hold} (hold) or {linear} (linear)"))),
     }
 }
 

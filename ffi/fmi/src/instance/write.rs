@@ -67,8 +67,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Gives a model that has started the values of its tunable parameters among the variables; one that has not is built
-    /// anew at the end of initialization.
+    /// Gives a model that has started the values of its tunable parameters among the variables; one that has not is
+    /// built anew at the end of initialization.
     fn tune(&mut self, references: &[u32]) -> Result<(), Failure> {
         if !self.model.is_started() {
             return Ok(());
