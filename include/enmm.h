@@ -652,7 +652,8 @@ typedef struct enmm_block_state {
 } enmm_block_state;
 
 /**
- * Energies now and works since the start, per metre of thickness. kinetic + strain + potential + damping + yielding
+ * Energies and works half an internal step ago, as velocities are, per metre of thickness; what contacts, supports and
+ * bolts store is that of the start of the last internal step. kinetic + strain + potential + damping + yielding
  * equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.
  */
 typedef struct enmm_energies {
@@ -1263,22 +1264,21 @@ enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, dou
 enmm_status enmm_set_strength_factor(struct enmm_model *model, double f);
 
 /**
- * Sets the particle velocity (m/s, x to the right, y upwards) of the wave that comes in through a quiet boundary, or the
- * velocity with which the supports of a held point or edge move. It acts in dynamic stages, beside what the case says.
+ * Sets the particle velocity (m/s, x to the right, y upwards) of the wave that comes in through a quiet boundary, or
+ * the velocity with which the supports of a held point or edge move. It acts in dynamic stages, beside what the case
+ * says.
  *
  * Acts at the same times as enmm_set_gravity; a linear way is taken exactly, its bends included.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is of another kind, or a value that is not finite or
  * beyond 1e4 m/s.
  */
-enmm_status enmm_set_port_velocity(struct enmm_model *model,
-                                   uint32_t port,
-                                   double vx,
-                                   double vy);
+enmm_status enmm_set_port_velocity(struct enmm_model *model, uint32_t port, double vx, double vy);
 
 /**
- * Sets the displacement (m) that the supports of a held point or edge have reached at the end of the next step, counted
- * from their place before a host has moved them. They go there at a steady velocity and stay, unless it is set again.
+ * Sets the displacement (m) that the supports of a held point or edge have reached at the end of the next step,
+ * counted from their place before a host has moved them. They go there at a steady velocity and stay, unless it is set
+ * again.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist or is of another kind, or a value that is not finite or
  * beyond 1e9 m.
@@ -1286,24 +1286,24 @@ enmm_status enmm_set_port_velocity(struct enmm_model *model,
 enmm_status enmm_set_port_displacement(struct enmm_model *model, uint32_t port, double ux, double uy);
 
 /**
- * Makes all inputs that have been set since the last step act at once from the start of the next one, even where inputs
- * vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
+ * Makes all inputs that have been set since the last step act at once from the start of the next one, even where
+ * inputs vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
  */
 enmm_status enmm_jump(struct enmm_model *model);
 
 /**
  * Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block or the
- * port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved states.
- * enmm_set_interpolation sets that of all inputs.
+ * port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved
+ * states. enmm_set_interpolation sets that of all inputs.
  *
  * Errors: ENMM_INVALID_ARGUMENT for another number, or a block or port that does not exist.
  */
 enmm_status enmm_set_input_interpolation(struct enmm_model *model, int32_t input, uint32_t index, int32_t mode);
 
 /**
- * Returns the inputs that are set now: gravity (m/s2, two numbers), acceleration of the base (m/s2, two numbers), height
- * of the water (m; 0 without water), factor on the strength of joints. Pointers may be NULL where the value is of no
- * interest.
+ * Returns the inputs that are set now: gravity (m/s2, two numbers), acceleration of the base (m/s2, two numbers),
+ * height of the water (m; 0 without water), factor on the strength of joints. Pointers may be NULL where the value is
+ * of no interest.
  */
 enmm_status enmm_get_inputs(struct enmm_model *model,
                             double *gravity,
@@ -1320,9 +1320,9 @@ enmm_status enmm_get_inputs(struct enmm_model *model,
 enmm_status enmm_get_block_force(struct enmm_model *model, uint32_t block, double *force, double *moment);
 
 /**
- * Returns what is set on a port now: traction (Pa, two numbers), pressure (Pa) and velocity (m/s, two numbers); 0 where
- * its kind takes no such input. For a block see enmm_get_block_force. Pointers may be NULL where the value is of no
- * interest.
+ * Returns what is set on a port now: traction (Pa, two numbers), pressure (Pa) and velocity (m/s, two numbers); 0
+ * where its kind takes no such input. For a block see enmm_get_block_force. Pointers may be NULL where the value is of
+ * no interest.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a port that does not exist.
  */
@@ -1424,10 +1424,10 @@ enmm_status enmm_get_parameter(struct enmm_model *model, uint32_t parameter, dou
 /**
  * Sets a parameter.
  *
- * Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of the
- * value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it. Values
- * are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made active is
- * installed at its length of now with its pretension.
+ * Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of
+ * the value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it.
+ * Values are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made
+ * active is installed at its length of now with its pretension.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a parameter that does not exist, a value out of its range, or one that is fixed
  * after the start; ENMM_INVALID_CASE when no model can be built with the value. Nothing has changed then.

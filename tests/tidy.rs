@@ -14,8 +14,8 @@ const ROOMS: [(&str, usize); 9] = [
     ("mechanics", 2700),
     ("contact", 7650),
     ("state", 2050),
-    ("step", 3300),
-    ("model", 5550),
+    ("step", 3400),
+    ("model", 5800),
     ("cosimulation", 2_200),
 ];
 const COLUMNS_MAX: usize = 120;

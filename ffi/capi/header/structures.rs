@@ -33,7 +33,8 @@ const BLOCK_HEAD: &str = "\
     pub flags: u32,
 ";
 const ENERGIES: &str = "\
-Energies now and works since the start, per metre of thickness. kinetic + strain + potential + damping + yielding
+Energies and works half an internal step ago, as velocities are, per metre of thickness; what contacts, supports and
+/// bolts store is that of the start of the last internal step. kinetic + strain + potential + damping + yielding
 /// equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.";
 const TOTALS_TEXT: &str = "Sums and extremes over the model.";
 const PORT: &str = "\

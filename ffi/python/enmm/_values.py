@@ -56,7 +56,7 @@ class StepInfo(NamedTuple):
 
 
 class Energies(NamedTuple):
-    """Energies now and works since the start, per metre of thickness.
+    """Energies and works half an internal step ago, as velocities are, per metre of thickness; what contacts, supports and bolts store is that of the start of the last internal step.
 
     kinetic + strain + potential + damping + yielding equals contact_work + support_work + bolt_work + radiation +
     external_work + baseline + residual.
