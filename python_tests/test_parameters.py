@@ -90,3 +90,23 @@ def test_models_go_through_pickle_with_their_parameters(slope):
     with pickle.loads(pickle.dumps(slope)) as copy, pickle.loads(pickle.dumps(state)):
         assert dict(copy.parameters) == dict(slope.parameters)
         assert np.array_equal(run(copy, 5), run(slope, 5))
+
+
+def test_a_tunable_parameter_of_an_fmu_acts_as_in_the_library(slope_fmu, opened, slope):
+    name, toe = "joint_law.weak.friction", ("toe.displacement_x", "toe.displacement_y")
+    instance = opened(slope_fmu).initialize()
+    instance.run(3, 0.01)
+    state = instance.save()
+    instance.check(instance.set({name: math.radians(23)}))
+    instance.run(5, 0.01, first=3)
+    slope.start()
+    run(slope, 3)
+    slope.parameters[name] = math.radians(23)
+    assert tuple(run(slope, 5)[-1]) == tuple(instance.get(*toe))
+    assert instance.get(name) == [math.radians(23)]
+    instance.check(instance.restore(state))
+    assert instance.get(name) == [math.radians(26)]
+    moved = instance.run(5, 0.01, first=3).get(*toe)
+    assert moved != list(run(slope, 1)[-1])
+    instance.check(instance.set({name: math.radians(23)}))
+    assert instance.set({"rock.schist.young": 1e9}) == 3, "fixed parameters are refused"

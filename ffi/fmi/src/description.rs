@@ -190,6 +190,7 @@ fn causality(variable: &Variable) -> String {
 /// The word for a variability in both versions.
 fn variability(variable: &Variable) -> String {
     match variable.causality {
+        Causality::Parameter if variable.is_tunable => "tunable",
         Causality::Parameter => "fixed",
         _ if variable.is_continuous() => "continuous",
         _ => "discrete",
