@@ -982,6 +982,64 @@ typedef struct enmm_port_state {
   double reaction_y;
 } enmm_port_state;
 
+/**
+ * Samples of enmm_rollout.
+ */
+typedef struct enmm_rollout_plan {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Number of samples.
+   */
+  size_t samples;
+  /**
+   * States from which the samples go on: one for all, or one for each.
+   */
+  struct enmm_state *const *states;
+  /**
+   * Number of states: 1, or that of the samples.
+   */
+  size_t state_count;
+  /**
+   * Parameters that are set in each sample (enmm_find_parameter); may be NULL when there are none.
+   */
+  const uint32_t *parameters;
+  /**
+   * Number of parameters.
+   */
+  size_t parameter_count;
+  /**
+   * Their values: samples * parameter_count numbers, those of one sample after those of another.
+   */
+  const double *values;
+  /**
+   * Communication step (s).
+   */
+  double step;
+  /**
+   * Number of communication steps of each sample.
+   */
+  size_t steps;
+  /**
+   * Port of each output.
+   */
+  const uint32_t *ports;
+  /**
+   * Quantity of each output: its place among the members of enmm_port_state behind struct_size, from 0.
+   */
+  const uint32_t *quantities;
+  /**
+   * Number of outputs.
+   */
+  size_t output_count;
+  /**
+   * Number of threads, 1 to 1024; the bits do not depend on it.
+   */
+  size_t threads;
+} enmm_rollout_plan;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1740,6 +1798,36 @@ enmm_status enmm_write_frame(struct enmm_model *model);
  * now or since enmm_record. The recording has ended in any case.
  */
 enmm_status enmm_end_record(struct enmm_model *model);
+
+/**
+ * Advances `n` models by `h` (s) each from the time at which it stands, on `threads` threads; the bits are those of
+ * enmm_do_step. `statuses` gets the status of each, and may be NULL; a model that fails is as before, others go on.
+ * Messages go out on the threads that step the models.
+ *
+ * Errors: the first status of a model that is not ENMM_OK, whose message enmm_last_error returns;
+ * ENMM_INVALID_ARGUMENT for a number of threads that is not 1 to 1024; ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_batch_step(struct enmm_model *const *models, size_t n, double h, size_t threads, int32_t *statuses);
+
+/**
+ * Takes samples of one model on from saved states, each with parameters of its own, and writes outputs of ports after
+ * every communication step. The model stays as it is; the bits are those of the same calls one by one.
+ *
+ * `out` holds `capacity` numbers, samples * steps * outputs of the plan: those of one step after those of another,
+ * sample by sample. Behind the failure of a sample they are not a number. `statuses` gets the status of each sample,
+ * and may be NULL. enmm_interrupt ends all samples.
+ *
+ * Errors: ENMM_BUFFER_TOO_SMALL; ENMM_INVALID_ARGUMENT for a plan whose numbers do not fit, ENMM_DEAD_HANDLE for a
+ * state that is not there, ENMM_NULL_ARGUMENT. The failure of a sample is in its status alone.
+ *
+ * # Safety
+ * Every pointer is as the head of the header states, those of the plan as it states.
+ */
+enmm_status enmm_rollout(struct enmm_model *model,
+                         const struct enmm_rollout_plan *plan,
+                         double *out,
+                         size_t capacity,
+                         int32_t *statuses);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -110,3 +110,53 @@ def test_a_tunable_parameter_of_an_fmu_acts_as_in_the_library(slope_fmu, opened,
     assert moved != list(run(slope, 1)[-1])
     instance.check(instance.set({name: math.radians(23)}))
     assert instance.set({"rock.schist.young": 1e9}) == 3, "fixed parameters are refused"
+
+
+def test_a_rollout_is_the_same_calls_one_by_one(package, slope):
+    """Three frictions from one state, on one thread and on two."""
+    name, frictions = "joint_law.weak.friction", np.radians([22.0, 24.0, 26.0])
+    slope.start()
+    run(slope, 2)
+    state, stands = slope.save(), slope.time
+    outputs = [("toe", "displacement_x"), ("toe", "displacement_y"), ("face", "stress_yy")]
+    one = package.rollout(slope, state, {name: frictions}, steps=5, h=0.01, outputs=outputs)
+    two = package.rollout(slope, [state] * 3, {name: frictions}, steps=5, h=0.01, outputs=outputs, threads=2)
+    assert one.values.shape == (3, 5, 3) and np.array_equal(one.values, two.values)
+    assert not one.statuses.any() and slope.time == stands
+    for friction, rows in zip(frictions, one.values, strict=True):
+        slope.restore(state)
+        slope.parameters[name] = friction
+        assert np.array_equal(run(slope, 5), rows[:, :2])
+        assert slope.ports["face"].state().stress_yy == rows[-1, 2]
+    with pytest.raises(package.InvalidArgumentError, match="slip_x"):
+        package.rollout(slope, state, steps=1, outputs=[("toe", "slip_x")])
+    with pytest.raises(package.InvalidArgumentError, match="samples"):
+        package.rollout(slope, [state] * 2, {name: frictions}, steps=1, outputs=outputs)
+
+
+def test_a_sample_that_fails_leaves_the_others(package, slope):
+    slope.start()
+    good = slope.save()
+    slope.set_block_force(slope.ports["toe"].block, 1e15, 1e15)
+    bad = slope.save()
+    made = package.rollout(slope, [good, bad], steps=3, h=0.01, outputs=[("toe", "displacement_x")], threads=2)
+    assert made.statuses.tolist() == [0, package.Status.NUMERICAL_FAILURE]
+    assert np.isfinite(made.values[0]).all() and np.isnan(made.values[1]).any()
+
+
+def test_models_step_together_with_the_same_bits(package, slope, cases):
+    models = [package.Model.from_file(cases / "coupled_slope.toml") for _ in range(3)]
+    for model, friction in zip(models, (22, 24, 26), strict=True):
+        model.parameters["joint_law.weak.friction"] = math.radians(friction)
+        model.start()
+    alone = [model.save() for model in models]
+    assert package.batch_step(models, 0.02, threads=2).tolist() == [0, 0, 0]
+    moved = [model.serialize() for model in models]
+    for model, state in zip(models, alone, strict=True):
+        model.restore(state)
+        model.do_step(model.time, 0.02)
+    assert [model.serialize() for model in models] == moved
+    with pytest.raises(package.InvalidArgumentError, match="threads"):
+        package.batch_step(models, 0.02, threads=0)
+    models[1].close()
+    assert package.batch_step(models, 0.02, threads=2).tolist() == [0, package.Status.DEAD_HANDLE, 0]

@@ -16,7 +16,7 @@ const ROOMS: [(&str, usize); 9] = [
     ("state", 2050),
     ("step", 3400),
     ("model", 5800),
-    ("cosimulation", 2_600),
+    ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;
 const README_LINES_MAX: usize = 200;

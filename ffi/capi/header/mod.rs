@@ -93,6 +93,7 @@ fn plain() -> Result<String, String> {
         "abi/observe",
         "abi/state",
         "abi/record",
+        "abi/batch",
     ];
     for file in files {
         builder = builder.with_src(sources.join(file).with_extension("rs"));

@@ -251,7 +251,9 @@ fn structures(items: &[Item]) -> Result<Vec<Structure>, String> {
         let mut fields = Vec::new();
         for field in items[k + 1..].iter().take_while(|item| !item.code.starts_with('}')) {
             let (kind, name) = field.code.trim_end_matches(';').rsplit_once(' ').ok_or(&field.code)?;
-            fields.push(Field { name: name.to_owned(), kind: by_value(kind)?, comment: field.comment.clone() });
+            let kind = if name.starts_with('*') { "c_void_p" } else { by_value(kind)? };
+            let name = name.trim_start_matches('*').to_owned();
+            fields.push(Field { name, kind, comment: field.comment.clone() });
         }
         found.push(Structure { name: name.to_owned(), class: class(name), comment: item.comment.clone(), fields });
     }
@@ -290,7 +292,7 @@ fn argument(kind: &str) -> Result<String, String> {
     Ok(match kind.rsplit_once('*').map(|(target, _)| target.trim()) {
         Some("char" | "uint8_t") => "c_char_p".to_owned(),
         Some("void" | "struct enmm_model" | "struct enmm_state") => "c_void_p".to_owned(),
-        Some(target) if target.ends_with('*') => "POINTER(c_void_p)".to_owned(),
+        Some(target) if target.trim_end_matches("const").ends_with('*') => "POINTER(c_void_p)".to_owned(),
         Some(target) if target.starts_with("struct ") => format!("POINTER({})", class(&target[7..])),
         Some(target) => format!("POINTER({})", by_value(target)?),
         None => by_value(kind)?.to_owned(),

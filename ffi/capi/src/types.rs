@@ -300,6 +300,38 @@ pub struct enmm_event {
     pub depth: f64,
 }
 
+/// Samples of enmm_rollout.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_rollout_plan {
+    /// Size of this structure (bytes), set by the caller.
+    pub struct_size: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// States from which the samples go on: one for all, or one for each.
+    pub states: *const *mut enmm_state,
+    /// Number of states: 1, or that of the samples.
+    pub state_count: usize,
+    /// Parameters that are set in each sample (enmm_find_parameter); may be NULL when there are none.
+    pub parameters: *const u32,
+    /// Number of parameters.
+    pub parameter_count: usize,
+    /// Their values: samples * parameter_count numbers, those of one sample after those of another.
+    pub values: *const f64,
+    /// Communication step (s).
+    pub step: f64,
+    /// Number of communication steps of each sample.
+    pub steps: usize,
+    /// Port of each output.
+    pub ports: *const u32,
+    /// Quantity of each output: its place among the members of enmm_port_state behind struct_size, from 0.
+    pub quantities: *const u32,
+    /// Number of outputs.
+    pub output_count: usize,
+    /// Number of threads, 1 to 1024; the bits do not depend on it.
+    pub threads: usize,
+}
+
 sized! {
     enmm_step_info 64 {
         struct_size time steps dt event_count first_event halved unsettled
@@ -313,6 +345,10 @@ sized! {
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress
         shear_stress
+    }
+    enmm_rollout_plan 104 {
+        struct_size samples states state_count parameters parameter_count values step steps ports quantities
+        output_count threads
     }
     enmm_event 24 {
         struct_size kind subject time other reserved depth

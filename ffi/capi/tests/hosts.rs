@@ -22,6 +22,11 @@ fn every_function_does_what_it_says_and_refuses_what_it_must() {
 }
 
 #[test]
+fn parameters_and_samples_are_as_the_same_calls_one_by_one() {
+    succeed(Command::new(host("ffi/capi/tests/c/samples.c")).arg(SMALL));
+}
+
+#[test]
 fn a_recorded_model_leaves_results_and_the_same_state() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("records");
     // That of an earlier test.

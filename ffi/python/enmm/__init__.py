@@ -36,6 +36,7 @@ from ._abi import (
     NameKind,
     PortKind,
 )
+from ._batch import Rollout, batch_step, rollout
 from ._case import Case
 from ._errors import (
     BufferTooSmallError,
@@ -119,6 +120,7 @@ __all__ = [
     "Ports",
     "Progress",
     "Result",
+    "Rollout",
     "RunError",
     "StartInfo",
     "State",
@@ -130,10 +132,12 @@ __all__ = [
     "TimeError",
     "Totals",
     "__version__",
+    "batch_step",
     "bound",
     "check",
     "fos",
     "load_library",
     "program",
+    "rollout",
     "run",
 ]

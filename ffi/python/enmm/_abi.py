@@ -319,6 +319,26 @@ class PortState(ctypes.Structure):
     ]
 
 
+class RolloutPlan(ctypes.Structure):
+    """`enmm_rollout_plan`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("samples", c_size_t),
+        ("states", c_void_p),
+        ("state_count", c_size_t),
+        ("parameters", c_void_p),
+        ("parameter_count", c_size_t),
+        ("values", c_void_p),
+        ("step", c_double),
+        ("steps", c_size_t),
+        ("ports", c_void_p),
+        ("quantities", c_void_p),
+        ("output_count", c_size_t),
+        ("threads", c_size_t),
+    ]
+
+
 STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_start_info": StartInfo,
     "enmm_step_info": StepInfo,
@@ -330,6 +350,7 @@ STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_contact": Contact,
     "enmm_event": Event,
     "enmm_port_state": PortState,
+    "enmm_rollout_plan": RolloutPlan,
 }
 """Structures by their name in C."""
 
@@ -427,5 +448,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_record": (c_int32, [c_void_p, c_char_p]),
     "enmm_write_frame": (c_int32, [c_void_p]),
     "enmm_end_record": (c_int32, [c_void_p]),
+    "enmm_batch_step": (c_int32, [POINTER(c_void_p), c_size_t, c_double, c_size_t, POINTER(c_int32)]),
+    "enmm_rollout": (c_int32, [c_void_p, POINTER(RolloutPlan), POINTER(c_double), c_size_t, POINTER(c_int32)]),
 }
 """Result and arguments of every function."""

@@ -76,6 +76,10 @@ class Parameters(MutableMapping[str, float]):
     def __repr__(self) -> str:
         return f"<enmm.Parameters {dict(self)}>"
 
+    def index(self, name: str) -> int:
+        """Number of a parameter."""
+        return self._index(name)
+
     def _index(self, name: str) -> int:
         if name not in self._by_name:
             # Only to fail: the library tells the names that there are.

@@ -1,5 +1,6 @@
 //! Entry points: pointers in, references to [`crate::safe`], pointers out.
 
+pub mod batch;
 pub mod inputs;
 pub mod library;
 pub mod model;

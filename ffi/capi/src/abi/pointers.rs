@@ -115,6 +115,19 @@ pub unsafe fn check_struct<T: Growing>(out: *const T) -> Outcome {
     unsafe { stride_of(out) }.map(|_| ())
 }
 
+/// The structure of a caller, which says its size.
+///
+/// # Safety
+/// `given` is NULL or points to a structure as large as its `struct_size` says.
+pub unsafe fn read_struct<T: Growing>(given: *const T) -> Result<T, Failure> {
+    check(T::NAME, given, 1)?;
+    // SAFETY: promised by the caller; the size is not less than that of version 1, which is all that is read.
+    unsafe {
+        stride_of(given)?;
+        Ok(given.read())
+    }
+}
+
 /// Writes structures and their number, or the number alone; the size of the first is the stride.
 ///
 /// # Safety

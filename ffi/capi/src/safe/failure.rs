@@ -125,6 +125,14 @@ pub fn last_message() -> *const libc::c_char {
     LAST.with(|last| last.as_ptr().cast_const().cast())
 }
 
+/// The last message of this thread.
+pub fn last_text() -> String {
+    LAST.with_borrow(|last| {
+        let text = last.split(|byte| *byte == 0).next().unwrap_or_default();
+        String::from_utf8_lossy(text).into_owned()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

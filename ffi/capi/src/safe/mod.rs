@@ -1,6 +1,7 @@
 //! Everything behind the entry points that needs no pointer.
 #![forbid(unsafe_code)]
 
+pub mod batch;
 pub mod control;
 pub mod enter;
 pub mod failure;

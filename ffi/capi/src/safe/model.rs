@@ -89,7 +89,7 @@ pub struct Model {
     warnings: Vec<String>,
     /// States of the blocks that the host looks at in place.
     pub(super) viewed: Vec<enmm_block_state>,
-    interrupt: Interrupt,
+    pub(super) interrupt: Interrupt,
     /// Whether the slope had failed at the end of the last search for the initial equilibrium.
     has_failed_at_start: bool,
     /// The case, which records of results show.

@@ -22,6 +22,11 @@ impl Kept {
     fn of(saved: Saved) -> Self {
         Self { saved, bytes: Mutex::new(None) }
     }
+
+    /// The state.
+    pub fn saved(&self) -> &Saved {
+        &self.saved
+    }
 }
 
 impl Model {
