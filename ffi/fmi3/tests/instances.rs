@@ -120,13 +120,13 @@ fn time_has_no_value_before_initialization_mode() {
 
 #[test]
 fn energy_from_nowhere_is_a_warning_in_the_log() {
-    let doubts_of = |fmu: &Fmu| {
+    let doubts_of = |fmu: &Fmu, status| {
         let instance = fmu.instantiate(true, None);
-        instance.start();
+        instance.start_as(status);
         doubts(instance.lines())
     };
-    assert_eq!(doubts_of(&Fmu::soft()), [(Status::Warning, "logStatusWarning".to_owned())]);
-    assert_eq!(doubts_of(&Fmu::boxed()), []);
+    assert_eq!(doubts_of(&Fmu::soft(), Status::Warning), [(Status::Warning, "logStatusWarning".to_owned())]);
+    assert_eq!(doubts_of(&Fmu::boxed(), Status::Ok), []);
 }
 
 #[test]

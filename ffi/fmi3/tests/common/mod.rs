@@ -103,8 +103,13 @@ impl Drop for Instance<'_> {
 
 impl Instance<'_> {
     pub fn start(&self) {
+        self.start_as(OK);
+    }
+
+    /// Starts with this status at the end of initialization.
+    pub fn start_as(&self, status: Status) {
         assert_eq!(fmi3EnterInitializationMode(self.pointer, false, 0.0, 0.0, false, 0.0), OK);
-        assert_eq!(fmi3ExitInitializationMode(self.pointer), OK, "{:?}", self.log.lines);
+        assert_eq!(fmi3ExitInitializationMode(self.pointer), status, "{:?}", self.log.lines);
     }
 
     pub fn lines(&self) -> Vec<Line> {
