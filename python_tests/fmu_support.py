@@ -231,11 +231,12 @@ class Instance:
         assert self.pointer, self.log
         self.check(self.set_up(start, stop))
         self.check(self.set(values))
-        self.check(self.exit_initialization())
+        # A warning says that the slope is not at rest, as some start values make it.
+        self.check(self.exit_initialization(), WARNING)
         return self
 
-    def check(self, status: int):
-        assert status == OK, (status, self.log[-3:])
+    def check(self, status: int, *others: int):
+        assert status in (OK, *others), (status, self.log[-3:])
 
     def step(self, t: float, h: float) -> int:
         if self.version == 2:
