@@ -27,11 +27,10 @@ pub unsafe extern "C" fn enmm_batch_step(
         let handles: Vec<usize> = unsafe { pointers::slice("models", models, n)? }.iter().map(|m| m.addr()).collect();
         let outcomes = batch::step_all(&handles, h, threads)?;
         if !statuses.is_null() {
-            let statuses_of = outcomes.iter().map(|outcome| batch::status_of(outcome) as i32);
-            // SAFETY: promised by the host: as many numbers as models.
-            statuses_of
-                .enumerate()
-                .try_for_each(|(k, status)| unsafe { pointers::write("statuses", statuses.add(k), status) })?;
+            for (k, outcome) in outcomes.iter().enumerate() {
+                // SAFETY: promised by the host: as many numbers as models.
+                unsafe { pointers::write("statuses", statuses.add(k), batch::status_of(outcome) as i32)? };
+            }
         }
         outcomes.into_iter().collect()
     })
