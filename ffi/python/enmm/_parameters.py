@@ -44,7 +44,7 @@ class Parameters(MutableMapping[str, float]):
 
     def info(self, name: str) -> Parameter:
         """Unit, meaning and range of a parameter."""
-        index = self._index(name)
+        index = self.index(name)
         low, high, tunable = c_double(), c_double(), c_int32()
         self._core.call("enmm_parameter_range", index, byref(low), byref(high), byref(tunable))
         unit = self._core.text("enmm_parameter_unit", index)
@@ -52,7 +52,7 @@ class Parameters(MutableMapping[str, float]):
         return Parameter(name, unit, description, low.value, high.value, bool(tunable.value))
 
     def __getitem__(self, name: str) -> float:
-        return float(self._core.get("enmm_get_parameter", c_double, self._index(name)))
+        return float(self._core.get("enmm_get_parameter", c_double, self.index(name)))
 
     def __setitem__(self, name: str, value: SupportsFloat) -> None:
         self._set({name: number(value)})
@@ -78,16 +78,13 @@ class Parameters(MutableMapping[str, float]):
 
     def index(self, name: str) -> int:
         """Number of a parameter."""
-        return self._index(name)
-
-    def _index(self, name: str) -> int:
         if name not in self._by_name:
             # Only to fail: the library tells the names that there are.
             self._core.get("enmm_find_parameter", c_uint32, text("name", name))
         return self._by_name[name]
 
     def _set(self, values: Mapping[str, float]) -> None:
-        indices = np.array([self._index(name) for name in values], dtype=np.uint32)
+        indices = np.array([self.index(name) for name in values], dtype=np.uint32)
         numbers = np.array(list(values.values()), dtype=np.float64)
         before = self._core.text("enmm_case_hash")
         self._core.call("enmm_set_parameters", pointer(indices, c_uint32), indices.size, pointer(numbers, c_double))

@@ -33,7 +33,7 @@ pub unsafe extern "C" fn enmm_state_save(model: *mut enmm_model, out: *mut *mut 
 /// Errors: ENMM_WRONG_STATE for a state of another case, ENMM_DEAD_HANDLE; the model then stays as it is.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_state_restore(model: *mut enmm_model, state: *mut enmm_state) -> enmm_status {
-    with_model(model.addr(), |model| model.restore(state.addr()))
+    enmm_state_restore_with(model, state, 0)
 }
 
 /// Returns the model to a saved state in a way that `flags` choose: 0 as enmm_state_restore does, ENMM_KEEP_PARAMETERS
@@ -96,14 +96,8 @@ pub unsafe extern "C" fn enmm_state_deserialize(
     size: usize,
     out: *mut *mut enmm_state,
 ) -> enmm_status {
-    // SAFETY: promised by the host. Without a model there is no state either; a NULL is reported below.
-    let _ = unsafe { pointers::write_handle("out", out, 0) };
     // SAFETY: promised by the host.
-    with_model(model.addr(), |model| unsafe {
-        pointers::write_handle("out", out, 0)?;
-        let bytes = pointers::slice("bytes", bytes, size)?;
-        pointers::write_handle("out", out, model.deserialize(bytes)?)
-    })
+    unsafe { enmm_state_deserialize_with(model, bytes, size, 0, out) }
 }
 
 /// Makes a state from bytes in a way that `flags` choose: 0 as enmm_state_deserialize does, ENMM_KEEP_PARAMETERS for

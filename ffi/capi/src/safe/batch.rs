@@ -89,6 +89,7 @@ impl Model {
     /// # Errors
     /// A dead state, or numbers that do not fit.
     pub fn roll_out(&self, plan: &Plan) -> Result<Made, Failure> {
+        self.interrupt.clear();
         let kept: Vec<Arc<Kept>> = plan.states.iter().map(|handle| STATES.find(*handle)).collect::<Result<_, _>>()?;
         let states: Vec<&Saved> = kept.iter().map(|kept| kept.saved()).collect();
         let parameters: Vec<usize> = plan.parameters.iter().map(|k| *k as usize).collect();

@@ -38,18 +38,10 @@ impl Model {
         STATES.insert(Kept::of(self.inner.save()))
     }
 
-    /// Goes back to a state.
-    ///
-    /// # Errors
-    /// A dead state, or one of another case.
-    pub fn restore(&mut self, state: usize) -> Outcome {
-        self.restore_with(state, 0)
-    }
-
     /// Goes back to a state in the way of the flags.
     ///
     /// # Errors
-    /// As [`Model::restore`]; flags that do not exist.
+    /// A dead state, one of another case, or flags that do not exist.
     pub fn restore_with(&mut self, state: usize, flags: u32) -> Outcome {
         let kept = STATES.find(state)?;
         if keeps_parameters(flags)? {
@@ -79,18 +71,10 @@ impl Model {
         outcome
     }
 
-    /// Makes a state of bytes and returns its handle.
-    ///
-    /// # Errors
-    /// Bytes that are damaged, or of another case or version.
-    pub fn deserialize(&self, bytes: &[u8]) -> Result<usize, Failure> {
-        self.deserialize_with(bytes, 0)
-    }
-
     /// Makes a state of bytes in the way of the flags and returns its handle.
     ///
     /// # Errors
-    /// As [`Model::deserialize`]; flags that do not exist.
+    /// Bytes that are damaged, of another case or version, or flags that do not exist.
     pub fn deserialize_with(&self, bytes: &[u8], flags: u32) -> Result<usize, Failure> {
         STATES.insert(Kept::of(if keeps_parameters(flags)? {
             self.inner.deserialize_keeping_parameters(bytes)?

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "state_bytes.h"
 
 #define SIZE 300
 
@@ -26,16 +27,9 @@ static int is_there(const char *folder, const char *name)
 /* Bytes of the state after ten steps. */
 static unsigned char *moved(enmm_model *model, size_t *size)
 {
-    enmm_state *state = NULL;
-    unsigned char *bytes;
     for (int k = 0; k < 10; k++)
         OK(enmm_do_step(model, 0.01 * k, 0.01, NULL));
-    OK(enmm_state_save(model, &state));
-    OK(enmm_state_serialize(model, state, NULL, 0, size));
-    bytes = malloc(*size);
-    OK(enmm_state_serialize(model, state, bytes, *size, size));
-    OK(enmm_state_free(state));
-    return bytes;
+    return bytes_of(model, size);
 }
 
 static void on_log(void *user, enmm_log_level level, const char *message)
