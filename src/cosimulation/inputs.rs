@@ -8,7 +8,7 @@ use std::fmt::Display;
 
 use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::state::{Inputs, PortKind};
+use crate::state::{Input, Inputs, Port, PortKind};
 
 use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX, VELOCITY_MAX};
 use super::{Cosimulation, CosimulationError};
@@ -159,6 +159,28 @@ impl Cosimulation {
     /// inputs are interpolated: an anchor is lost. What is set after this call goes on its way from there.
     pub fn jump(&mut self) {
         self.simulation.drive().jump();
+    }
+
+    /// The same for one input alone; that of a port of a block is the input of its block.
+    ///
+    /// # Errors
+    /// A block or a port that does not exist.
+    pub fn jump_of(&mut self, input: Input) -> Result<(), CosimulationError> {
+        let input = self.own_input(input)?;
+        self.simulation.drive().jump_of(input);
+        Ok(())
+    }
+
+    /// The input that exists, which for a port of a block is that of its block.
+    pub(super) fn own_input(&self, input: Input) -> Result<Input, CosimulationError> {
+        match input {
+            Input::Block(block) => self.check_block(BlockId::new(block as usize)).map(|()| input),
+            Input::Port(port) => Ok(match self.port(port as usize)? {
+                Port { kind: PortKind::Block, block, .. } => Input::Block(block.number()),
+                _ => input,
+            }),
+            _ => Ok(input),
+        }
     }
 
     /// Checks that a block exists.

@@ -275,6 +275,7 @@ impl Cosimulation {
                 (drive.since, drive.until) = (now, start + end);
                 others.for_each(|input| drive.from.take_over(input, &drive.to));
             }
+            Interpolation::Hold if self.ways.is_empty() => drive.jump(),
             Interpolation::Hold => {
                 let before = drive.from.clone();
                 drive.jump();

@@ -51,13 +51,12 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::cover::BlockId;
 use crate::geometry::Vector;
 pub use crate::model::case::limits;
 use crate::model::case::{Case, Invalid, StageKind};
 use crate::model::settle;
 use crate::model::{BlockState, Simulation, SlopeFailure};
-use crate::state::{Inputs, Port, State};
+use crate::state::{Inputs, State};
 use crate::step::{StepReport, THREADS_FROM, Wanted};
 use threads::Pool;
 use tuning::Parameters;
@@ -368,18 +367,12 @@ impl Cosimulation {
         input: Input,
         interpolation: Interpolation,
     ) -> Result<(), CosimulationError> {
-        let input = match input {
-            Input::Block(block) => {
-                self.check_block(BlockId::new(block as usize))?;
-                input
-            }
-            Input::Port(port) => match self.port(port as usize)? {
-                Port { kind: PortKind::Block, block, .. } => Input::Block(block.number()),
-                _ => input,
-            },
-            _ => input,
-        };
-        self.ways.insert(input, interpolation);
+        let input = self.own_input(input)?;
+        if interpolation == self.progress.interpolation {
+            self.ways.remove(&input);
+        } else {
+            self.ways.insert(input, interpolation);
+        }
         Ok(())
     }
 

@@ -169,6 +169,14 @@ impl Drive {
         self.before.rate.fill(Vector::zeros());
     }
 
+    /// Makes one of the values that of `to` as if it had always been so.
+    pub fn jump_of(&mut self, input: Input) {
+        self.from.take_over(input, &self.to);
+        if let Input::Port(port) = input {
+            self.before.rate[port as usize] = Vector::zeros();
+        }
+    }
+
     /// Notes the rates of velocities on a way that ends at a time (s).
     fn end_way(&mut self, end: f64) {
         if self.is_moving() {

@@ -37,7 +37,8 @@ impl ReportNotes {
 }
 
 keys! {
-    /// Whose the case is, as the description of an FMU says it; nothing of this acts on the model.
+    /// What the description of an FMU says: whose the case is, and which blocks have outputs of their own; nothing of
+    /// this acts on the model.
     #[derive(Eq)]
     pub default struct FmuNotes {
         /// Who wrote the case: name and organisation.
@@ -46,5 +47,9 @@ keys! {
         pub copyright: Option<String>,
         /// Terms of use of the case.
         pub license: Option<String>,
+        /// Ids of blocks whose states are outputs one by one, as `block_3.displacement_x`, for importers that have no
+        /// arrays.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub blocks: Vec<u32>,
     }
 }

@@ -48,8 +48,8 @@ pub struct Dialect {
     pub token: &'static str,
     /// Capabilities of the co-simulation.
     pub capabilities: &'static [(&'static str, &'static str)],
-    /// Writes a variable.
-    pub variable: fn(&mut Xml, &Variable) -> io::Result<()>,
+    /// Writes the variables.
+    pub variables: fn(&mut Xml, &Table) -> io::Result<()>,
     /// Writes the structure of the model.
     pub structure: fn(&mut Xml, &Table) -> io::Result<()>,
 }
@@ -77,7 +77,7 @@ pub fn document(dialect: &Dialect, table: &Table, facts: &Facts) -> io::Result<V
         units(xml, table)?;
         log_categories(xml)?;
         experiment(xml, facts)?;
-        xml.element("ModelVariables", &[], |xml| table.variables.iter().try_for_each(|v| (dialect.variable)(xml, v)))?;
+        xml.element("ModelVariables", &[], |xml| (dialect.variables)(xml, table))?;
         (dialect.structure)(xml, table)
     })?;
     Ok(xml.finish())
@@ -149,8 +149,11 @@ fn units(xml: &mut Xml, table: &Table) -> io::Result<()> {
                 let powers: Vec<_> =
                     bases.filter(|(_, power)| *power != 0).map(|(base, power)| (base, power.to_string())).collect();
                 xml.leaf("BaseUnit", &powers)?;
-                let Some((name, factor)) = unit::display(unit.name) else { return Ok(()) };
-                xml.leaf("DisplayUnit", &[("name", name.to_owned()), ("factor", number(factor))])
+                let displays = unit::DISPLAYS.iter().filter(|display| display.of == unit.name);
+                displays.into_iter().try_for_each(|display| {
+                    let factor = number(display.factor);
+                    xml.leaf("DisplayUnit", &[("name", display.name.to_owned()), ("factor", factor)])
+                })
             })?;
         }
         Ok(())
@@ -207,18 +210,21 @@ pub fn initial(variable: &Variable) -> Option<(&'static str, String)> {
     }
 }
 
-/// Quantity, unit, display unit, least, greatest and start value, as far as the variable has them.
+/// Quantity, unit, display unit, least, greatest, nominal and start value, as far as the variable has them.
 pub fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
     let mut attributes = Vec::new();
     if let Some(unit) = unit::of(variable) {
         attributes.push(("quantity", unit.quantity.to_owned()));
         attributes.push(("unit", unit.name.to_owned()));
     }
-    if let Some((name, _)) = unit::display(variable.unit) {
-        attributes.push(("displayUnit", name.to_owned()));
+    if let Some(display) = unit::display(variable) {
+        attributes.push(("displayUnit", display.name.to_owned()));
     }
     if let Some((low, high)) = variable.limits {
         attributes.extend([("min", number(low)), ("max", number(high))]);
+    }
+    if let Some(nominal) = variable.nominal {
+        attributes.push(("nominal", number(nominal)));
     }
     if let Some(start) = variable.start {
         let one = if variable.kind == Type::Boolean { (start != 0.0).to_string() } else { number(start) };

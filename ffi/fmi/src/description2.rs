@@ -21,7 +21,7 @@ const DIALECT: Dialect = Dialect {
     capabilities: &[
         ("needsExecutionTool", "false"),
         ("canHandleVariableCommunicationStepSize", "true"),
-        ("canInterpolateInputs", "false"),
+        ("canInterpolateInputs", "true"),
         ("maxOutputDerivativeOrder", "1"),
         ("canRunAsynchronuously", "false"),
         ("canBeInstantiatedOnlyOncePerProcess", "false"),
@@ -30,20 +30,41 @@ const DIALECT: Dialect = Dialect {
         ("canSerializeFMUstate", "true"),
         ("providesDirectionalDerivative", "false"),
     ],
-    variable,
+    variables,
     structure,
 };
 
-fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let mut attributes = identity(variable);
+/// Second names stand behind all others, as variables with the same value reference.
+fn variables(xml: &mut Xml, table: &Table) -> io::Result<()> {
+    table.variables.iter().try_for_each(|v| variable(xml, v, identity(v)))?;
+    let aliases = table.variables.iter().filter_map(|v| Some((v, v.alias?)));
+    aliases.into_iter().try_for_each(|(v, alias)| {
+        let mut attributes = identity(v);
+        for (key, value) in &mut attributes {
+            match *key {
+                "name" => *value = alias.to_owned(),
+                "causality" => *value = "local".to_owned(),
+                _ => {}
+            }
+        }
+        variable(xml, v, attributes)
+    })
+}
+
+fn variable(xml: &mut Xml, variable: &Variable, mut attributes: Vec<(&'static str, String)>) -> io::Result<()> {
     attributes.extend(initial(variable));
     let kind = match variable.kind {
         Type::Real => "Real",
         Type::Integer => "Integer",
         Type::Boolean => "Boolean",
+        Type::String => "String",
         Type::Binary => return Err(io::Error::other("FMI 2 has no binary variables")),
     };
-    xml.element("ScalarVariable", &attributes, |xml| xml.leaf(kind, &value_attributes(variable)))
+    let mut values = value_attributes(variable);
+    if variable.kind == Type::String {
+        values.push(("start", String::new()));
+    }
+    xml.element("ScalarVariable", &attributes, |xml| xml.leaf(kind, &values))
 }
 
 fn structure(xml: &mut Xml, table: &Table) -> io::Result<()> {

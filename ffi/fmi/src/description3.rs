@@ -34,12 +34,16 @@ const DIALECT: Dialect = Dialect {
         ("providesIntermediateUpdate", "true"),
         ("mightReturnEarlyFromDoStep", "true"),
         ("canReturnEarlyAfterIntermediateUpdate", "true"),
-        ("hasEventMode", "false"),
+        ("hasEventMode", "true"),
         ("providesEvaluateDiscreteStates", "false"),
     ],
-    variable,
+    variables,
     structure,
 };
+
+fn variables(xml: &mut Xml, table: &Table) -> io::Result<()> {
+    table.variables.iter().try_for_each(|v| variable(xml, v))
+}
 
 fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     let mut attributes = identity(variable);
@@ -56,10 +60,19 @@ fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
         Type::Real => "Float64",
         Type::Integer => "Int32",
         Type::Boolean => "Boolean",
+        Type::String => "String",
         Type::Binary => "Binary",
     };
-    let Some(length) = variable.length else { return xml.leaf(kind, &attributes) };
-    xml.element(kind, &attributes, |xml| xml.leaf("Dimension", &[("start", length.to_string())]))
+    if variable.length.is_none() && variable.alias.is_none() && variable.kind != Type::String {
+        return xml.leaf(kind, &attributes);
+    }
+    xml.element(kind, &attributes, |xml| {
+        variable.length.map_or(Ok(()), |length| xml.leaf("Dimension", &[("start", length.to_string())]))?;
+        if variable.kind == Type::String {
+            xml.leaf("Start", &[("value", String::new())])?;
+        }
+        variable.alias.map_or(Ok(()), |alias| xml.leaf("Alias", &[("name", alias.to_owned())]))
+    })
 }
 
 fn structure(xml: &mut Xml, table: &Table) -> io::Result<()> {

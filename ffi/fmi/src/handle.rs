@@ -185,6 +185,7 @@ mod tests {
             resources: folder,
             logging: false,
             early_return: true,
+            event_mode: false,
         };
         Instance::new(plan).unwrap()
     }

@@ -11,7 +11,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::description::{Facts, tool};
 use crate::platform::Library;
-use crate::table::{Table, Version};
+use crate::table::{Table, Version, check_blocks};
 use crate::{description2, description3, page, picture, resource, terminals};
 
 /// A packed FMU.
@@ -36,6 +36,9 @@ pub enum PackError {
     /// Two libraries belong in the same folder.
     #[error("two libraries are for binaries/{0}: give one library for each platform")]
     Twice(String),
+    /// A block that the notes of the case name is not there.
+    #[error("{0}")]
+    Block(String),
     /// A part cannot be made.
     #[error("cannot make {0} of the FMU ({1})")]
     Part(&'static str, String),
@@ -50,6 +53,7 @@ pub fn pack(loaded: &LoadedCase, name: &str, version: Version, libraries: &[Libr
     let libraries = in_order(libraries)?;
     let model = loaded.cosimulation()?;
     let facts = Facts::of(&model, &identifier(name));
+    check_blocks(model.case(), facts.blocks).map_err(PackError::Block)?;
     let table = Table::new(model.case(), facts.blocks, &loaded.hash, version);
     let files = files(loaded, name, &model, &facts, &table, &libraries)?;
     let bytes = archive(&files).map_err(|error| PackError::Part("the archive", error.to_string()))?;

@@ -149,6 +149,7 @@ fn kind(variable: &Variable, version: Version) -> String {
         (Type::Integer, Version::Two) => "Integer",
         (Type::Integer, Version::Three) => "Int32",
         (Type::Boolean, _) => "Boolean",
+        (Type::String, _) => "String",
         (Type::Binary, _) => "Binary",
     };
     variable.length.map_or(name.to_owned(), |length| format!("{name}[{length}]"))

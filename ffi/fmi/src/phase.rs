@@ -22,6 +22,8 @@ pub enum Phase {
     Error = 64,
     /// Within doStep, outside of intermediate update mode.
     Stepping = 128,
+    /// FMI 3 event mode.
+    Event = 256,
 }
 
 const I: u16 = Phase::Instantiated as u16;
@@ -32,6 +34,7 @@ const U: u16 = Phase::Intermediate as u16;
 const T: u16 = Phase::Terminated as u16;
 const E: u16 = Phase::Error as u16;
 const P: u16 = Phase::Stepping as u16;
+const V: u16 = Phase::Event as u16;
 
 impl Phase {
     /// The phase with this bit.
@@ -45,6 +48,7 @@ impl Phase {
             Self::Terminated,
             Self::Error,
             Self::Stepping,
+            Self::Event,
         ];
         all.into_iter().find(|&phase| phase as u16 == bit)
     }
@@ -60,6 +64,7 @@ impl Phase {
             Self::Terminated => "terminated",
             Self::Error => "error",
             Self::Stepping => "within a step",
+            Self::Event => "event mode",
         }
     }
 }
@@ -91,6 +96,10 @@ pub enum Call {
     GetDerivative,
     /// doStep.
     DoStep,
+    /// enterEventMode.
+    EnterEvent,
+    /// enterStepMode and updateDiscreteStates.
+    Event,
     /// getStatus and its typed sisters.
     Status,
     /// Everything about saved states.
@@ -98,7 +107,7 @@ pub enum Call {
 }
 
 /// All but those within a step.
-const AT_REST: u16 = I | N | S | F | T | E;
+const AT_REST: u16 = I | N | S | F | T | E | V;
 
 /// Rows: call, mask of FMI 2, mask of FMI 3.
 ///
@@ -107,19 +116,21 @@ const AT_REST: u16 = I | N | S | F | T | E;
 /// leaves the instance in step mode. Start values may be read in FMI 3 as soon as the instance exists; outputs and
 /// time, which have none, only from initialization mode on. Within a step, for a logger that calls back or another
 /// thread, there is nothing but logging.
-const TABLE: [(Call, u16, u16); 14] = [
+const TABLE: [(Call, u16, u16); 16] = [
     (Call::Logging, AT_REST | P, AT_REST | P | U),
     (Call::Free, AT_REST, AT_REST),
     (Call::Setup, I, 0),
     (Call::EnterInitialization, I, I),
     (Call::ExitInitialization, N, N),
-    (Call::Terminate, S | F, S),
+    (Call::Terminate, S | F, S | V),
     (Call::Reset, AT_REST, AT_REST),
-    (Call::Get, N | S | F | T | E, I | N | S | U | T | E),
-    (Call::Set, I | N | S | F, I | N | S),
+    (Call::Get, N | S | F | T | E, I | N | S | U | T | E | V),
+    (Call::Set, I | N | S | F, I | N | S | V),
     (Call::SetParameter, I | N, I | N),
-    (Call::GetDerivative, S | F | T | E, S | U | T | E),
+    (Call::GetDerivative, S | F | T | E, S | U | T | E | V),
     (Call::DoStep, S | F, S),
+    (Call::EnterEvent, 0, S),
+    (Call::Event, 0, V),
     (Call::Status, S | F | T, 0),
     (Call::State, AT_REST, AT_REST),
 ];
@@ -140,7 +151,7 @@ mod tests {
             assert_eq!(row.0 as usize, k);
         }
         for bit in 0..16 {
-            assert_eq!(Phase::of(1 << bit).map(|phase| phase as u16), (bit < 8).then_some(1 << bit));
+            assert_eq!(Phase::of(1 << bit).map(|phase| phase as u16), (bit < 9).then_some(1 << bit));
         }
     }
 

@@ -6,6 +6,8 @@ use enmm::model::case::Port;
 use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, MONITOR_QUANTITIES};
 use uuid::Uuid;
 
+use crate::unit;
+
 /// Version of the standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Version {
@@ -24,6 +26,8 @@ pub enum Type {
     Integer,
     /// `Boolean`.
     Boolean,
+    /// `String`.
+    String,
     /// FMI 3 `Binary`.
     Binary,
 }
@@ -82,6 +86,8 @@ pub enum Quantity {
     Threads,
     /// Whether inputs are interpolated over a communication step.
     InterpolateInputs,
+    /// Folder to record results into.
+    ResultsFolder,
     /// Gravity (m/s²).
     Gravity(Axis),
     /// Acceleration of the base (m/s²).
@@ -112,13 +118,15 @@ pub enum Quantity {
     Total(Total),
     /// Output of all blocks: its place in [`BLOCK_QUANTITIES`].
     Blocks(usize),
+    /// Output of one block, by its id: its place in [`BLOCK_QUANTITIES`].
+    Block(usize, usize),
 }
 
 impl Quantity {
     /// Whether the value is a function of the state of the model alone: an input that is set does not change it before
     /// the next step. Everything but the snapshot is such, which holds the inputs.
     pub fn is_of_state(self) -> bool {
-        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_) | Self::Total(_))
+        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_) | Self::Block(..) | Self::Total(_))
     }
 }
 
@@ -137,6 +145,10 @@ pub struct Variable {
     pub kind: Type,
     /// Role.
     pub causality: Causality,
+    /// Second name of the same variable.
+    pub alias: Option<&'static str>,
+    /// Order of magnitude of a number that changes continuously.
+    pub nominal: Option<f64>,
     /// Start value of a parameter or an input; a Boolean is 0 or 1.
     pub start: Option<f64>,
     /// Least and greatest value of a number that can be set.
@@ -181,7 +193,7 @@ impl Variable {
     }
 }
 
-/// All variables of one FMU, ordered by value reference; parameters first, then inputs, then outputs.
+/// All variables of one FMU, ordered by value reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// Version of the standard.
@@ -205,6 +217,9 @@ impl Table {
         rows.parameters(&parameters);
         rows.inputs(case, version);
         rows.outputs(case, version);
+        case.fmu.iter().flat_map(|notes| &notes.blocks).for_each(|&block| rows.block(block as usize));
+        rows.results_folder();
+        set_nominals(&mut rows.variables, case);
         let token = token(&rows.variables, hash, version);
         Self { version, variables: rows.variables, parameters, token }
     }
@@ -224,9 +239,8 @@ impl Table {
                 let rate = rate_of(MONITOR_QUANTITIES[place].name)?;
                 place_of(&MONITOR_QUANTITIES, rate).map(|rate| Quantity::Monitor(k, rate))
             }
-            Quantity::Blocks(place) => {
-                place_of(&BLOCK_QUANTITIES, rate_of(BLOCK_QUANTITIES[place].name)?).map(Quantity::Blocks)
-            }
+            Quantity::Blocks(place) => block_rate(place).map(Quantity::Blocks),
+            Quantity::Block(block, place) => block_rate(place).map(|rate| Quantity::Block(block, rate)),
             _ => None,
         }
     }
@@ -239,6 +253,48 @@ fn rate_of(name: &str) -> Option<&'static str> {
         "displacement_y" => Some("velocity_y"),
         "rotation" => Some("angular_velocity"),
         _ => None,
+    }
+}
+
+/// Place of the time derivative of a quantity of blocks.
+fn block_rate(place: usize) -> Option<usize> {
+    place_of(&BLOCK_QUANTITIES, rate_of(BLOCK_QUANTITIES[place].name)?)
+}
+
+/// Checks the ids of the blocks that the notes of a case name.
+///
+/// # Errors
+/// The case has no such block.
+pub fn check_blocks(case: &Case, blocks: usize) -> Result<(), String> {
+    let named = case.fmu.iter().flat_map(|notes| notes.blocks.iter().enumerate());
+    match named.into_iter().find(|(_, block)| **block as usize >= blocks) {
+        None => Ok(()),
+        Some((k, block)) => Err(format!(
+            "fmu.blocks[{k}]: is {block}, must be less than the number of blocks, {blocks}; the pictures of \
+             `enmm check -o` show their ids"
+        )),
+    }
+}
+
+/// Sets orders of magnitude, those of the weight of a piece of rock as large as an element.
+fn set_nominals(variables: &mut [Variable], case: &Case) {
+    let density = case.rocks.values().map(|rock| rock.density).fold(1.0, f64::max);
+    let gravity = Some(case.gravity.x.hypot(case.gravity.y)).filter(|&g| g > 0.0).unwrap_or(10.0);
+    let (size, stress) = (case.mesh.size, density * gravity * case.mesh.size);
+    for v in variables.iter_mut().filter(|v| v.is_continuous()) {
+        let magnitude = match v.unit {
+            "m" if unit::is_small_length(v) => 1e-3,
+            "m" => size,
+            "m/s" | "rad/s" => 1e-2,
+            "m/s2" => gravity,
+            "rad" => 1e-3,
+            "N/m" => stress * size,
+            "N.m/m" => stress * size * size,
+            "J/m" => stress * size * 1e-3,
+            "Pa" => stress,
+            _ => continue,
+        };
+        v.nominal = Some(10_f64.powf(magnitude.log10().round()));
     }
 }
 
@@ -313,6 +369,8 @@ impl Rows {
             unit,
             kind,
             causality,
+            alias: None,
+            nominal: None,
             start: None,
             limits: None,
             is_tunable: false,
@@ -470,8 +528,28 @@ impl Rows {
         later.into_iter().for_each(|total| self.total(total));
     }
 
+    /// Outputs of one block.
+    fn block(&mut self, block: usize) {
+        for (place, quantity) in BLOCK_QUANTITIES.iter().enumerate().filter(|(_, q)| !q.column.is_empty()) {
+            let name = format!("block_{block}.{}", quantity.name);
+            let what = format!("{}, block {block}", quantity.text);
+            let row = self.output(&name, &what, quantity.unit, Quantity::Block(block, place));
+            if quantity.is_count {
+                row.kind = Type::Integer;
+            }
+        }
+    }
+
+    /// Stands last, so that it moves no value reference.
+    fn results_folder(&mut self) {
+        let what = "Folder to record the results of the run into, with pictures and summary; empty for none";
+        self.parameter("results_folder", what, "", Type::String, Quantity::ResultsFolder);
+    }
+
     fn total(&mut self, (total, name, what, unit, kind): TotalRow) {
-        self.output(name, what, unit, Quantity::Total(total)).kind = kind;
+        let row = self.output(name, what, unit, Quantity::Total(total));
+        row.kind = kind;
+        row.alias = (name == ALIAS[1]).then_some(ALIAS[0]);
     }
 
     fn block_outputs(&mut self) {
@@ -560,7 +638,7 @@ const OWN_TOTALS: [TotalRow; 5] = [
     (Total::LastEventSubject, "last_event_subject", "Block or joint of the last event, -1 if none", "", Type::Integer),
 ];
 
-/// Second name of a variable, which importers know, and the name in the tables of the engine.
+/// Older name of an output, and its name.
 const ALIAS: [&str; 2] = ["sliding_contacts", "slipping_contacts"];
 
 /// Outputs of the whole model that keep the value references they have always had. All others stand behind every other
@@ -585,7 +663,7 @@ const FIRST_TOTALS: [&str; 27] = [
     "internal_dt",
     "last_event_time",
     "open_contacts",
-    "sliding_contacts",
+    "slipping_contacts",
     "locked_contacts",
     "detached_blocks",
     "slipped_joints",
@@ -601,11 +679,9 @@ fn totals() -> (Vec<TotalRow>, Vec<TotalRow>) {
     let energies = ENERGIES.iter().enumerate().map(|(k, q)| (Total::Energy(k), q.column, q.text, q.unit, Type::Real));
     let extremes =
         TOTALS.iter().enumerate().map(|(k, q)| (Total::Extreme(k), q.column, q.text, q.unit, kind(q.is_count)));
-    let mut rows: Vec<TotalRow> = energies.chain(extremes).chain(OWN_TOTALS).collect();
-    let known = rows.iter().find(|row| row.1 == ALIAS[1]).copied();
-    rows.extend(known.map(|(total, _, what, unit, kind)| (total, ALIAS[0], what, unit, kind)));
+    let rows = energies.chain(extremes).chain(OWN_TOTALS);
     let place = |row: &TotalRow| FIRST_TOTALS.iter().position(|name| *name == row.1);
-    let (mut first, later): (Vec<_>, Vec<_>) = rows.into_iter().partition(|row| place(row).is_some());
+    let (mut first, later): (Vec<_>, Vec<_>) = rows.partition(|row| place(row).is_some());
     first.sort_by_key(place);
     (first, later)
 }
@@ -628,7 +704,6 @@ mod tests {
     fn every_first_output_is_in_a_table() {
         let (first, later) = totals();
         assert_eq!(first.iter().map(|row| row.1).collect::<Vec<_>>(), FIRST_TOTALS);
-        assert_eq!(first.len() + later.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len() + 1);
-        assert!(later.iter().any(|row| row.1 == ALIAS[1]));
+        assert_eq!(first.len() + later.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len());
     }
 }

@@ -40,7 +40,43 @@ pub fn of(variable: &Variable) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| unit.name == name)
 }
 
-/// Name and factor of the unit in which people read a unit: shown value = factor × value.
-pub fn display(name: &str) -> Option<(&'static str, f64)> {
-    (name == "rad").then_some(("deg", 180.0 / std::f64::consts::PI))
+/// A unit in which people read another: shown value = factor × value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Display {
+    /// Name.
+    pub name: &'static str,
+    /// The unit that it stands for.
+    pub of: &'static str,
+    /// Factor.
+    pub factor: f64,
+}
+
+/// All units in which people read others.
+pub const DISPLAYS: [Display; 7] = [
+    Display { name: "deg", of: "rad", factor: 180.0 / std::f64::consts::PI },
+    Display { name: "mm", of: "m", factor: 1e3 },
+    Display { name: "kPa", of: "Pa", factor: 1e-3 },
+    Display { name: "MPa", of: "Pa", factor: 1e-6 },
+    Display { name: "kN/m", of: "N/m", factor: 1e-3 },
+    Display { name: "kN.m/m", of: "N.m/m", factor: 1e-3 },
+    Display { name: "kJ/m", of: "J/m", factor: 1e-3 },
+];
+
+/// Least start value (Pa) of moduli, which people read in MPa.
+const MODULUS: f64 = 1e7;
+
+/// The unit in which people read a variable, if it is another than its own.
+pub fn display(variable: &Variable) -> Option<&'static Display> {
+    let is_large = variable.start.is_some_and(|start| start.abs() >= MODULUS);
+    let name = match variable.unit {
+        "m" if !is_small_length(variable) => return None,
+        "Pa" if is_large => "MPa",
+        unit => DISPLAYS.iter().find(|display| display.of == unit)?.name,
+    };
+    DISPLAYS.iter().find(|display| display.name == name)
+}
+
+/// Whether a length is a motion or a depth of contacts, and not a place.
+pub fn is_small_length(variable: &Variable) -> bool {
+    ["displacement", "slip", "penetration", "settlement", "opening"].iter().any(|word| variable.name.contains(word))
 }

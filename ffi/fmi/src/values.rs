@@ -1,9 +1,9 @@
 //! Values that an importer has set: all parameters and inputs, and how they reach the model.
 
-use enmm::cosimulation::{Cosimulation, CosimulationError, PortKind};
+use enmm::cosimulation::{Cosimulation, CosimulationError, Input, PortKind};
 use enmm::geometry::Vector;
 
-use crate::table::{Axis, Causality, Quantity, Table, Variable};
+use crate::table::{Axis, Causality, Quantity, Table, Type, Variable};
 
 /// Values of parameters and inputs, arrays flat, in the order of the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +12,8 @@ pub struct Values {
     starts: Vec<usize>,
     /// The values.
     pub all: Vec<f64>,
+    /// Folder to record results into; empty for none. It is no part of a state.
+    pub results_folder: String,
 }
 
 /// Inputs that reach the model by one setter. Blocks come first: sums of forces are all that the model may still refuse
@@ -57,9 +59,9 @@ impl Group {
 impl Values {
     /// The start values.
     pub fn of(table: &Table) -> Self {
-        let mut values = Self { starts: vec![0], all: Vec::new() };
+        let mut values = Self { starts: vec![0], all: Vec::new(), results_folder: String::new() };
         for v in &table.variables {
-            if matches!(v.causality, Causality::Parameter | Causality::Input) {
+            if is_number(v) {
                 values.all.extend(std::iter::repeat_n(v.start.unwrap_or(0.0), v.size()));
             }
             values.starts.push(values.all.len());
@@ -69,7 +71,7 @@ impl Values {
 
     /// Other values of the same variables.
     pub fn with(&self, all: &[f64]) -> Self {
-        Self { starts: self.starts.clone(), all: all.to_vec() }
+        Self { all: all.to_vec(), ..self.clone() }
     }
 
     /// Values of a variable; empty for outputs.
@@ -83,8 +85,7 @@ impl Values {
     /// # Errors
     /// The first that cannot be set.
     pub fn check(&self, table: &Table) -> Result<(), String> {
-        let settable = |v: &&Variable| matches!(v.causality, Causality::Parameter | Causality::Input);
-        let mut variables = table.variables.iter().filter(settable);
+        let mut variables = table.variables.iter().filter(|v| is_number(v));
         variables.try_for_each(|v| self.get(v.reference).iter().try_for_each(|&value| v.check(value)))
     }
 
@@ -172,6 +173,28 @@ impl Values {
         }
         let sums = force.into_iter().zip(moment).enumerate();
         model.set_block_forces(sums.map(|(block, (force, moment))| (block as u32, force, moment)))
+    }
+}
+
+/// Whether a variable has numbers that can be set.
+fn is_number(v: &Variable) -> bool {
+    matches!(v.causality, Causality::Parameter | Causality::Input) && v.kind != Type::String
+}
+
+/// The inputs of the model, of which there are so many blocks, that a variable sets.
+pub fn inputs_of(quantity: Quantity, blocks: usize) -> Vec<Input> {
+    match quantity {
+        Quantity::Gravity(_) => vec![Input::Gravity],
+        Quantity::BaseAcceleration(_) => vec![Input::BaseAcceleration],
+        Quantity::WaterLevel => vec![Input::WaterLevel],
+        Quantity::StrengthFactor => vec![Input::StrengthFactor],
+        Quantity::PortForce(k, _)
+        | Quantity::PortMoment(k)
+        | Quantity::PortTraction(k, _)
+        | Quantity::PortPressure(k)
+        | Quantity::PortVelocity(k, _) => vec![Input::Port(k as u32)],
+        Quantity::BlockForce(_) | Quantity::BlockMoment => (0..blocks as u32).map(Input::Block).collect(),
+        _ => Vec::new(),
     }
 }
 

@@ -118,8 +118,23 @@ fn the_description_says_what_the_table_says() {
         let elements = elements(part(&files, "modelDescription.xml"));
         let two = version == Version::Two;
         let variables: Vec<&Element> = elements.iter().filter(|e| e.parent == "ModelVariables").collect();
-        assert_eq!(variables.len(), table.variables.len());
+        let names = |element: &&Element| {
+            (element.get("name").unwrap().to_owned(), element.get("valueReference").map(str::to_owned))
+        };
+        let slipping = table.variables.iter().find(|v| v.name == "slipping_contacts").unwrap().reference;
+        let alias = ("sliding_contacts".to_owned(), two.then(|| slipping.to_string()));
+        let aliases =
+            elements.iter().filter(|e| e.name == "Alias").chain(variables.iter().copied().skip(table.variables.len()));
+        assert_eq!(aliases.map(|e| names(&e)).collect::<Vec<_>>(), [alias]);
         let units: BTreeSet<_> = elements.iter().filter(|e| e.name == "Unit").map(|e| e.get("name").unwrap()).collect();
+        let mut of = "";
+        let mut displays = BTreeSet::new();
+        for element in elements.iter().filter(|e| e.name == "Unit" || e.name == "DisplayUnit") {
+            match element.name.as_str() {
+                "Unit" => of = element.get("name").unwrap(),
+                _ => assert!(displays.insert((of, element.get("name").unwrap()))),
+            }
+        }
         let values: Vec<&Element> =
             if two { elements.iter().filter(|e| e.parent == "ScalarVariable").collect() } else { variables.clone() };
         for ((variable, element), value) in table.variables.iter().zip(variables).zip(values) {
@@ -131,9 +146,13 @@ fn the_description_says_what_the_table_says() {
             assert!(unit.is_empty() || units.contains(unit), "{}", variable.name);
             let starts: Vec<f64> = value.get("start").unwrap_or_default().split_whitespace().map(number).collect();
             assert_eq!(starts, vec![variable.start.unwrap_or(0.0); starts.len()]);
+            assert_eq!(value.get("nominal").map(number), variable.nominal, "{}", variable.name);
+            let shown = value.get("displayUnit");
+            assert!(shown.is_none_or(|shown| displays.contains(&(unit, shown))), "{}", variable.name);
             let expected = variable.start.map_or(0, |_| variable.size());
             assert_eq!(starts.len(), expected, "{}", variable.name);
-            let given = matches!(variable.causality, Causality::Parameter | Causality::Input);
+            let given =
+                matches!(variable.causality, Causality::Parameter | Causality::Input) && variable.kind != Type::String;
             assert_eq!(given, variable.start.is_some(), "{}", variable.name);
             assert_eq!(given && variable.kind != Type::Boolean, variable.limits.is_some(), "{}", variable.name);
             if let (Some((low, high)), Some(start)) = (variable.limits, variable.start) {

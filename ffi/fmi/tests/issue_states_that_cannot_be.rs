@@ -30,7 +30,15 @@ fn instance(version: Version, folder: &Path) -> Instance {
     std::fs::write(folder.join(resource::FILE), resource::encode(&loaded, "incline").unwrap()).unwrap();
     let blocks = loaded.cosimulation().unwrap().block_states().len();
     let token = Table::new(&loaded.case, blocks, &loaded.hash, version).token;
-    let plan = Plan { version, name: "a", token: &token, resources: folder, logging: false, early_return: false };
+    let plan = Plan {
+        version,
+        name: "a",
+        token: &token,
+        resources: folder,
+        logging: false,
+        early_return: false,
+        event_mode: false,
+    };
     let mut instance = Instance::new(plan).unwrap();
     assert_eq!(instance.enter_initialization(Some((0.0, None))), Status::Ok);
     assert_eq!(instance.exit_initialization(), Status::Ok);

@@ -89,7 +89,15 @@ fn instance(
     let location = location.ok_or("the resource location is missing: give the URI of the folder `resources`")?;
     let resources: PathBuf = location::resolve(location)?;
     let guarded = std::panic::catch_unwind(|| {
-        Instance::new(Plan { version: Version::Two, name, token, resources: &resources, logging, early_return: false })
+        Instance::new(Plan {
+            version: Version::Two,
+            name,
+            token,
+            resources: &resources,
+            logging,
+            early_return: false,
+            event_mode: false,
+        })
     });
     guarded.unwrap_or_else(|_| Err("the model cannot be built: panic".to_owned()))
 }

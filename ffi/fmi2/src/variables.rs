@@ -51,32 +51,32 @@ accessors! {
         |number| number as Boolean, |value| f64::from(u8::from(value != 0));
 }
 
-/// There are no variables of type String.
-fn no_strings(c: Component, name: &str, call_kind: Call, n: usize) -> Status {
-    call(c, name, |instance| match n {
-        0 => instance.permits(call_kind),
-        _ => instance.refuse("no variable of this FMU is a String; use the function of its type"),
-    })
+/// The texts belong to the instance and stay until the next call of this function.
+///
+/// # Safety
+/// Pointers are as FMI 2 states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetString(
+    c: Component,
+    references: *const ValueReference,
+    n: usize,
+    values: *mut Text,
+) -> Status {
+    // SAFETY: the importer gives `n` references and room for `n` values.
+    call(c, "fmi2GetString", |instance| unsafe { raw::get_texts(instance, (references, n), (values, n)) })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetString(
+pub unsafe extern "C" fn fmi2SetString(
     c: Component,
-    _references: *const ValueReference,
+    references: *const ValueReference,
     n: usize,
-    _values: *mut Text,
+    values: *const Text,
 ) -> Status {
-    no_strings(c, "fmi2GetString", Call::Get, n)
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetString(
-    c: Component,
-    _references: *const ValueReference,
-    n: usize,
-    _values: *const Text,
-) -> Status {
-    no_strings(c, "fmi2SetString", Call::Set, n)
+    // SAFETY: the importer gives `n` references and `n` values.
+    call(c, "fmi2SetString", |instance| unsafe { raw::set_texts(instance, (references, n), (values, n)) })
 }
 
 #[unsafe(no_mangle)]
@@ -94,17 +94,22 @@ pub extern "C" fn fmi2GetDirectionalDerivative(
     })
 }
 
+/// # Safety
+/// Pointers are as FMI 2 states.
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetRealInputDerivatives(
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: Component,
-    _references: *const ValueReference,
+    references: *const ValueReference,
     n: usize,
-    _orders: *const Integer,
-    _values: *const Real,
+    orders: *const Integer,
+    values: *const Real,
 ) -> Status {
-    call(c, "fmi2SetRealInputDerivatives", |instance| match n {
-        0 => instance.permits(Call::Set),
-        _ => instance.refuse("this FMU takes none (canInterpolateInputs=false); set interpolate_inputs instead"),
+    call(c, "fmi2SetRealInputDerivatives", |instance| {
+        // SAFETY: the importer gives `n` references, orders and values.
+        match unsafe { (raw::slice(references, n), raw::slice(orders, n), raw::slice(values, n)) } {
+            (Some(references), Some(orders), Some(rates)) => instance.set_derivatives(references, orders, rates),
+            _ => instance.refuse(MISSING),
+        }
     })
 }
 

@@ -1,6 +1,6 @@
 //! FMI 2: the calls that each state allows, and a warning of the log.
 
-use std::ffi::c_void;
+use std::ffi::{CStr, CString, c_void};
 
 use crate::common::{ERROR, Fmu, OK, doubts};
 use enmm_fmi2::*;
@@ -64,4 +64,84 @@ fn energy_from_nowhere_is_a_warning_in_the_log() {
     };
     assert_eq!(doubts_of(&Fmu::soft(), Status::Warning), [(Status::Warning, "logStatusWarning".to_owned())]);
     assert_eq!(doubts_of(&Fmu::boxed(), Status::Ok), []);
+}
+
+/// Two steps under a force, from 0 to 100 kN/m within the first.
+fn moved(instance: &crate::common::Instance, go: impl FnOnce()) -> [u64; 3] {
+    instance.start();
+    go();
+    for t in [0.0, 0.01] {
+        assert_eq!(instance.step(t, 0.01), OK, "{:?}", instance.lines());
+    }
+    ["box.displacement_x", "bed.shear_force", "kinetic_energy"].map(|name| instance.get(name).to_bits())
+}
+
+#[test]
+fn an_input_with_a_derivative_goes_linearly_through_one_step() {
+    let fmu = Fmu::boxed();
+    let (ramp, linear, jump) = (fmu.instance(), fmu.instance(), fmu.instance());
+    let by_ramp = moved(&ramp, || assert_eq!(ramp.set_rate("box.force_x", 1, 1e7), OK));
+    assert_eq!(ramp.get("box.force_x"), 1e5, "it stays where it has arrived");
+    let on = fmu.reference("interpolate_inputs");
+    assert_eq!(unsafe { fmi2SetBoolean(linear.component, &on, 1, &1) }, OK);
+    assert_eq!(by_ramp, moved(&linear, || assert_eq!(linear.set("box.force_x", 1e5), OK)));
+    assert_ne!(by_ramp, moved(&jump, || assert_eq!(jump.set("box.force_x", 1e5), OK)));
+}
+
+#[test]
+fn derivatives_are_part_of_a_state_and_wrong_ones_are_refused() {
+    let fmu = Fmu::boxed();
+    let instance = fmu.instance();
+    let mut state = std::ptr::null_mut();
+    let first = moved(&instance, || {
+        assert_eq!(instance.set_rate("box.force_x", 1, 1e7), OK);
+        assert_eq!(unsafe { fmi2GetFMUstate(instance.component, &mut state) }, OK);
+    });
+    for (name, order, rate, told) in [
+        ("box.force_x", 2, 1.0, "the order of the derivative is 2, must be 1"),
+        ("box.force_x", 1, f64::NAN, "must be a finite number"),
+        ("box.displacement_x", 1, 1.0, "is no input"),
+    ] {
+        assert_eq!(instance.set_rate(name, order, rate), ERROR);
+        assert!(instance.lines().last().unwrap().2.contains(told), "{:?}", instance.lines());
+        assert_eq!(fmi2SetFMUstate(instance.component, state), OK);
+    }
+    assert_eq!(instance.step(0.0, 0.01), OK);
+    assert_eq!(instance.step(0.01, 0.01), OK);
+    let names = ["box.displacement_x", "bed.shear_force", "kinetic_energy"];
+    assert_eq!(first, names.map(|name| instance.get(name).to_bits()));
+    assert_eq!(instance.set_rate("box.force_x", 1, 1e300), OK);
+    assert_eq!(instance.step(0.02, 0.01), ERROR);
+    assert!(instance.lines().last().unwrap().2.contains("at the end of the step, box.force_x: is"));
+}
+
+#[test]
+fn results_go_to_the_folder_that_the_importer_names() {
+    let (fmu, out) = (Fmu::boxed(), tempfile::tempdir().unwrap());
+    let folder = out.path().join("results");
+    let (reference, text) = (fmu.reference("results_folder"), CString::new(folder.to_str().unwrap()).unwrap());
+    let instance = fmu.instance();
+    assert_eq!(unsafe { fmi2SetString(instance.component, &reference, 1, &text.as_ptr()) }, OK);
+    let plain = moved(&fmu.instance(), || {});
+    assert_eq!(moved(&instance, || {}), plain, "recording changes no bit");
+    let mut told = std::ptr::null();
+    assert_eq!(unsafe { fmi2GetString(instance.component, &reference, 1, &mut told) }, OK);
+    assert_eq!(unsafe { CStr::from_ptr(told) }, text.as_c_str());
+    assert_eq!(fmi2Terminate(instance.component), OK);
+    for name in ["summary.json", "history.csv", "report.html"] {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
+    assert_eq!(fmi2Reset(instance.component), OK);
+    assert_eq!(
+        unsafe { fmi2GetString(instance.component, &reference, 1, &mut told) },
+        ERROR,
+        "not before initialization"
+    );
+    let file = CString::new(out.path().join("results/summary.json").to_str().unwrap()).unwrap();
+    assert_eq!(fmi2Reset(instance.component), OK);
+    assert_eq!(unsafe { fmi2SetString(instance.component, &reference, 1, &file.as_ptr()) }, OK);
+    assert_eq!(fmi2SetupExperiment(instance.component, 0, 0.0, 0.0, 0, 0.0), OK);
+    assert_eq!(fmi2EnterInitializationMode(instance.component), OK);
+    assert_eq!(fmi2ExitInitializationMode(instance.component), ERROR);
+    assert!(instance.lines().last().unwrap().2.contains("results_folder: "), "{:?}", instance.lines());
 }

@@ -119,15 +119,12 @@ fn instance(
     (event_mode, early_return, logging): (bool, bool, bool),
     required: Option<&[ValueReference]>,
 ) -> Result<Instance, String> {
-    if event_mode {
-        return Err("this FMU has no event mode (hasEventMode=false): set eventModeUsed to false".to_owned());
-    }
     let (Some(name), Some(token)) = (name, token) else {
         return Err("the name of the instance or its token is missing or no UTF-8: give both".to_owned());
     };
     let resources = Path::new(resources.ok_or("the resource path is missing: give the folder `resources`")?);
     let built = std::panic::catch_unwind(|| {
-        Instance::new(Plan { version: Version::Three, name, token, resources, logging, early_return })
+        Instance::new(Plan { version: Version::Three, name, token, resources, logging, early_return, event_mode })
     });
     let instance = built.unwrap_or_else(|_| Err("the model cannot be built: panic".to_owned()))?;
     let required = required.ok_or("the intermediate variables are missing: give them or the number 0")?;

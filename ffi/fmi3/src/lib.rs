@@ -7,6 +7,7 @@
 
 mod common;
 mod cosimulation;
+mod events;
 mod refused;
 mod saved;
 mod types;
@@ -14,6 +15,7 @@ mod variables;
 
 pub use common::*;
 pub use cosimulation::*;
+pub use events::*;
 pub use refused::*;
 pub use saved::*;
 pub use types::*;

@@ -12,14 +12,8 @@ macro_rules! refused {
 }
 
 refused! {
-    "this FMU has no event mode (hasEventMode=false)": {
-        fmi3EnterEventMode();
-        fmi3EnterStepMode();
+    "this FMU has no discrete states to evaluate (providesEvaluateDiscreteStates=false)": {
         fmi3EvaluateDiscreteStates();
-        fmi3UpdateDiscreteStates(
-            _need_update: *mut bool, _terminate: *mut bool, _nominals_changed: *mut bool, _states_changed: *mut bool,
-            _next_event_defined: *mut bool, _next_event: *mut f64
-        );
     }
     "this FMU has no structural parameters": {
         fmi3EnterConfigurationMode();

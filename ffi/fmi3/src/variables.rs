@@ -1,4 +1,5 @@
-//! Getters and setters. Variables are of type Float64, Int32, Boolean and Binary; calls of other types must be empty.
+//! Getters and setters. Variables are of type Float64, Int32, Boolean, String and Binary; calls of other types must be
+//! empty.
 
 use enmm_fmi::phase::Call;
 use enmm_fmi::table::Type;
@@ -51,6 +52,40 @@ accessors! {
     fmi3GetInt32 fmi3SetInt32: i32 as i32, Integer, |number| number as i32, f64::from;
     // A byte of the importer need not be a `bool` of Rust.
     fmi3GetBoolean fmi3SetBoolean: bool as u8, Boolean, |number| u8::from(number != 0.0), |byte| f64::from(byte.min(1));
+}
+
+/// The texts belong to the instance and stay until the next call of this function.
+///
+/// # Safety
+/// Pointers are as FMI 3 states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetString(
+    instance: InstancePointer,
+    references: *const ValueReference,
+    n: usize,
+    values: *mut Text,
+    n_values: usize,
+) -> Status {
+    call(instance, "fmi3GetString", |instance| {
+        // SAFETY: the importer gives `n` references and room for `n_values` values.
+        unsafe { raw::get_texts(instance, (references, n), (values, n_values)) }
+    })
+}
+
+/// # Safety
+/// Pointers are as FMI 3 states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetString(
+    instance: InstancePointer,
+    references: *const ValueReference,
+    n: usize,
+    values: *const Text,
+    n_values: usize,
+) -> Status {
+    call(instance, "fmi3SetString", |instance| {
+        // SAFETY: the importer gives `n` references and `n_values` values.
+        unsafe { raw::set_texts(instance, (references, n), (values, n_values)) }
+    })
 }
 
 /// The bytes belong to the instance and stay until the next call of this function.
@@ -117,7 +152,6 @@ absent! {
     fmi3GetUInt32(Get; _values: *mut u32, _n_values: usize);
     fmi3GetInt64(Get; _values: *mut i64, _n_values: usize);
     fmi3GetUInt64(Get; _values: *mut u64, _n_values: usize);
-    fmi3GetString(Get; _values: *mut Text, _n_values: usize);
     fmi3GetClock(Get; _values: *mut bool);
     fmi3SetFloat32(Set; _values: *const f32, _n_values: usize);
     fmi3SetInt8(Set; _values: *const i8, _n_values: usize);
@@ -127,7 +161,6 @@ absent! {
     fmi3SetUInt32(Set; _values: *const u32, _n_values: usize);
     fmi3SetInt64(Set; _values: *const i64, _n_values: usize);
     fmi3SetUInt64(Set; _values: *const u64, _n_values: usize);
-    fmi3SetString(Set; _values: *const Text, _n_values: usize);
     fmi3SetBinary(Set; _sizes: *const usize, _values: *const Binary, _n_values: usize);
     fmi3SetClock(Set; _values: *const bool);
     fmi3GetIntervalDecimal(Get; _intervals: *mut f64, _qualifiers: *mut i32);

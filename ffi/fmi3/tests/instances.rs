@@ -146,3 +146,46 @@ fn places_for_the_end_of_a_step_are_looked_at_before_the_step() {
     }
     assert_eq!(bytes, [0; 2]);
 }
+
+/// Two steps under a force that is set in event mode or in step mode.
+fn moved(fmu: &Fmu, linear: bool, in_event_mode: bool) -> Vec<u64> {
+    let instance = fmu.instantiate_with(false, None, true);
+    let on = fmu.reference("interpolate_inputs");
+    assert_eq!(unsafe { fmi3SetBoolean(instance.pointer, &on, 1, &linear, 1) }, OK);
+    instance.start();
+    if in_event_mode {
+        assert_eq!(instance.set("box.force_x", &[1e5]), OK);
+    }
+    let (mut flags, mut next) = ([true; 5], f64::NAN);
+    let [a, b, c, d, e] = &mut flags;
+    assert_eq!(unsafe { fmi3UpdateDiscreteStates(instance.pointer, a, b, c, d, e, &mut next) }, OK);
+    assert_eq!((flags, next), ([false; 5], 0.0));
+    assert_eq!(fmi3EnterStepMode(instance.pointer), OK);
+    if !in_event_mode {
+        assert_eq!(instance.set("box.force_x", &[1e5]), OK);
+    }
+    for t in [0.0, 0.01] {
+        assert_eq!(instance.step(t, 0.01).0, OK, "{}", instance.last_line());
+    }
+    ["box.displacement_x", "bed.shear_force", "kinetic_energy"].map(|name| instance.get(name)[0].to_bits()).to_vec()
+}
+
+#[test]
+fn inputs_that_are_set_in_event_mode_jump() {
+    let fmu = Fmu::boxed();
+    let jumped = moved(&fmu, false, false);
+    assert_eq!(moved(&fmu, true, true), jumped);
+    assert_ne!(moved(&fmu, true, false), jumped, "in step mode they go linearly");
+}
+
+#[test]
+fn steps_and_event_mode_have_an_order() {
+    let fmu = Fmu::boxed();
+    let instance = fmu.instantiate_with(false, None, true);
+    instance.start();
+    assert_eq!(instance.step(0.0, 0.01).0, ERROR);
+    assert!(instance.last_line().contains("illegal in the state `event mode`"), "{}", instance.last_line());
+    let plain = fmu.started();
+    assert_eq!(fmi3EnterEventMode(plain.pointer), ERROR);
+    assert!(plain.last_line().contains("eventModeUsed was false"), "{}", plain.last_line());
+}

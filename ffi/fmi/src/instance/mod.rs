@@ -3,7 +3,10 @@
 //! A call either does all that it should or returns an error and leaves values and model as they were; the phase is
 //! then [`Phase::Error`], except for calls that only handle saved states or logging, or that come within a step.
 
+mod events;
+mod ramps;
 mod read;
+mod record;
 mod saved;
 mod step;
 mod write;
@@ -19,7 +22,7 @@ use enmm_io::LoadedCase;
 use crate::log::{Category, Filter, Message, Status};
 use crate::phase::{Call, Phase, is_legal};
 use crate::resource;
-use crate::table::{Table, Version};
+use crate::table::{Table, Version, check_blocks};
 use crate::values::Values;
 
 /// Why a call failed; the text goes to the log.
@@ -40,6 +43,8 @@ pub struct Plan<'a> {
     pub logging: bool,
     /// Whether steps may end early (FMI 3).
     pub early_return: bool,
+    /// Whether the importer uses event mode (FMI 3).
+    pub event_mode: bool,
 }
 
 /// Times of an experiment.
@@ -55,6 +60,8 @@ pub struct Instance {
     table: Table,
     loaded: LoadedCase,
     model: Cosimulation,
+    /// The case that the model was built of: that of the FMU with other parameters.
+    built_case: LoadedCase,
     /// State of the model of the case itself, as it was built.
     initial: Saved,
     /// Parameters that the model was built with.
@@ -67,6 +74,11 @@ pub struct Instance {
     experiment: Experiment,
     time: f64,
     early_return: bool,
+    event_mode: bool,
+    /// Derivatives of inputs for the next step.
+    rates: Vec<ramps::Rate>,
+    /// Whether it was said that results can no longer be recorded.
+    lost_record: bool,
     filter: Filter,
     messages: Vec<Message>,
     cache: read::Cache,
@@ -85,6 +97,7 @@ impl Instance {
         let loaded = resource::load(plan.resources).map_err(|error| error.to_string())?;
         let model = loaded.cosimulation().map_err(|error| error.to_string())?;
         let blocks = model.simulation().model().covers.block_count();
+        check_blocks(&loaded.case, blocks)?;
         let table = Table::new(&loaded.case, blocks, &loaded.hash, plan.version);
         if plan.token != table.token {
             let (given, own) = (plan.token, &table.token);
@@ -94,6 +107,7 @@ impl Instance {
         let mut instance = Self {
             initial: model.save(),
             built: values.parameters(&table),
+            built_case: loaded.clone(),
             threads: 1,
             values,
             phase: Phase::Instantiated,
@@ -101,6 +115,9 @@ impl Instance {
             experiment: Experiment { start: 0.0, stop: None },
             time: 0.0,
             early_return: plan.early_return,
+            event_mode: plan.event_mode,
+            rates: Vec::new(),
+            lost_record: false,
             filter: Filter::new(plan.logging),
             messages: Vec::new(),
             cache: read::Cache::default(),
@@ -234,7 +251,7 @@ impl Instance {
         let legal = self.allow(Call::ExitInitialization);
         let outcome = legal.and_then(|()| self.start_model());
         if outcome.is_ok() {
-            self.phase = Phase::Step;
+            self.phase = if self.event_mode { Phase::Event } else { Phase::Step };
         }
         match self.end(outcome) {
             Status::Ok if self.model.initial_residual().is_some() => Status::Warning,
@@ -254,6 +271,7 @@ impl Instance {
         let linear = self.values.interpolates(&self.table);
         self.model.set_interpolation(if linear { Interpolation::Linear } else { Interpolation::Hold });
         self.cache.clear();
+        self.begin_record()?;
         let started = self.model.start();
         started.map_err(|error| format!("the initial equilibrium was not found: {error}"))?;
         let steps = self.model.simulation().state().step;
@@ -298,10 +316,7 @@ impl Instance {
         if same_bits(&wanted, &self.built) {
             return Ok(());
         }
-        let mut model = self.model_of(&wanted)?;
-        self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
-        self.take_model(model, wanted);
-        Ok(())
+        self.rebuild(wanted)
     }
 
     /// Takes the initial equilibrium back, since a value of which it depends is about to change.
@@ -309,15 +324,19 @@ impl Instance {
         if self.phase != Phase::Initialization || !self.model.is_started() {
             return Ok(());
         }
-        let built = self.built.clone();
-        let mut model = self.model_of(&built)?;
+        self.rebuild(self.built.clone())
+    }
+
+    /// Builds a model of these parameters, with the inputs that hold. What was recorded is recorded again.
+    fn rebuild(&mut self, parameters: Vec<f64>) -> Result<(), Failure> {
+        let (case, mut model) = self.model_of(&parameters)?;
         self.values.push_changed(&self.table, &mut model).map_err(|error| error.to_string())?;
-        self.take_model(model, built);
+        self.take_model(case, model, parameters);
         Ok(())
     }
 
-    /// A new model of the case with these parameters.
-    fn model_of(&self, parameters: &[f64]) -> Result<Cosimulation, Failure> {
+    /// The case with these parameters, and a new model of it.
+    fn model_of(&self, parameters: &[f64]) -> Result<(LoadedCase, Cosimulation), Failure> {
         let mut case = self.loaded.case.clone();
         let mut changed = Vec::new();
         for (parameter, &value) in self.table.parameters.iter().zip(parameters) {
@@ -327,14 +346,17 @@ impl Instance {
             }
         }
         if changed.is_empty() {
-            return self.loaded.cosimulation().map_err(|error| error.to_string());
+            let model = self.loaded.cosimulation().map_err(|error| error.to_string())?;
+            return Ok((self.loaded.clone(), model));
         }
         let located = |problem: String| format!("no model can be built with {}: {problem}", changed.join(", "));
         let loaded = LoadedCase::of(case, self.loaded.source.file()).map_err(|error| located(error.to_string()))?;
-        loaded.cosimulation().map_err(|error| located(error.to_string()))
+        let model = loaded.cosimulation().map_err(|error| located(error.to_string()))?;
+        Ok((loaded, model))
     }
 
-    fn take_model(&mut self, model: Cosimulation, built: Vec<f64>) {
+    fn take_model(&mut self, case: LoadedCase, model: Cosimulation, built: Vec<f64>) {
+        self.built_case = case;
         self.model = model;
         self.built = built;
         self.threads = 1;
@@ -348,12 +370,17 @@ impl Instance {
             self.warn_of(self.model.doubt());
             self.phase = Phase::Terminated;
         }
+        let outcome = outcome.and_then(|()| self.end_record());
         self.end(outcome)
     }
 
     /// reset: everything is as after instantiate, but for saved states and logging.
     pub fn reset(&mut self) -> Status {
-        let outcome = self.allow(Call::Reset).and_then(|()| self.renew());
+        let legal = self.allow(Call::Reset);
+        let outcome = legal.and_then(|()| {
+            let recorded = self.end_record();
+            self.renew().and(recorded)
+        });
         self.end(outcome)
     }
 
@@ -364,11 +391,12 @@ impl Instance {
             self.use_threads(1)?;
             self.model.restore(&self.initial).map_err(|error| error.to_string())?;
         } else {
-            let model = self.model_of(&start)?;
-            self.take_model(model, start);
+            let (case, model) = self.model_of(&start)?;
+            self.take_model(case, model, start);
         }
         self.cache.clear();
         self.values = values;
+        self.rates.clear();
         self.experiment = Experiment { start: 0.0, stop: None };
         self.time = 0.0;
         self.phase = Phase::Instantiated;

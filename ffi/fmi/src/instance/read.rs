@@ -1,5 +1,7 @@
 //! Getters. What the model computes for all outputs at once is kept until it moves.
 
+use std::ffi::CString;
+
 use enmm::cosimulation::{EventKind, PORT_QUANTITIES, PortState, TOTALS, Totals};
 use enmm::model::{BLOCK_QUANTITIES, ENERGIES, MONITOR_QUANTITIES};
 
@@ -15,10 +17,11 @@ pub(super) struct Cache {
     totals: Option<Totals>,
     ports: Vec<[Option<PortState>; 2]>,
     snapshot: Vec<u8>,
+    pub(super) text: CString,
 }
 
 impl Cache {
-    /// Forgets everything but the bytes that the importer may still read.
+    /// Forgets everything but the bytes and the text that the importer may still read.
     pub(super) fn clear(&mut self) {
         self.totals = None;
         self.ports.clear();
@@ -123,9 +126,14 @@ impl Instance {
                 let get = BLOCK_QUANTITIES[place].get;
                 values.iter_mut().zip(states).for_each(|(value, state)| *value = get(state));
             }
+            Quantity::Block(block, place) => {
+                let state = self.model.simulation().blocks().get(block);
+                values[0] = state.map_or(0.0, |state| (BLOCK_QUANTITIES[place].get)(state));
+            }
             Quantity::Snapshot
             | Quantity::Parameter(_)
             | Quantity::Threads
+            | Quantity::ResultsFolder
             | Quantity::InterpolateInputs
             | Quantity::Gravity(_)
             | Quantity::BaseAcceleration(_)

@@ -7,9 +7,10 @@ use enmm::cosimulation::Saved;
 use enmm::model::bytes::{self, Keeper};
 use serde::{Deserialize, Serialize};
 
-use crate::log::Status;
+use crate::log::{Category, Status};
 use crate::phase::{Call, Phase};
 
+use super::ramps::Rate;
 use super::{Experiment, Failure, Instance, same_bits};
 
 /// All that an instance needs to go on with the same bits, in this process or another.
@@ -23,6 +24,7 @@ struct Whole {
     values: Vec<f64>,
     /// Parameters of the model that `model` is a state of.
     built: Vec<f64>,
+    rates: Vec<Rate>,
 }
 
 #[derive(Debug)]
@@ -80,6 +82,7 @@ impl Instance {
             time: self.time,
             values: self.values.all.clone(),
             built: self.built.clone(),
+            rates: self.rates.clone(),
             model: self.model.save(),
         }
     }
@@ -110,14 +113,18 @@ impl Instance {
             self.use_threads(threads)?;
             self.model.restore(&state.model).map_err(|error| error.to_string())?;
         } else {
-            let mut model = self.model_of(&state.built)?;
+            let (case, mut model) = self.model_of(&state.built)?;
             model.set_threads(threads).map_err(|error| error.to_string())?;
             model.restore(&state.model).map_err(|error| error.to_string())?;
-            self.take_model(model, state.built.clone());
+            if let Err(failure) = self.end_record() {
+                self.log(Status::Warning, Category::Warning, failure);
+            }
+            self.take_model(case, model, state.built.clone());
             self.threads = threads;
         }
         self.cache.clear();
         self.values = values;
+        self.rates.clone_from(&state.rates);
         self.phase = phase;
         self.time = state.time;
         self.experiment = Experiment { start: state.start, stop: state.stop };
@@ -135,7 +142,8 @@ impl Instance {
             }
         }
         self.values.with(&state.values).check(&self.table).map_err(|problem| format!("the saved state: {problem}"))?;
-        let other = if same_bits(&state.built, &self.built) { None } else { Some(self.model_of(&state.built)?) };
+        self.check_rates(&state.rates).map_err(|problem| format!("the saved state: {problem}"))?;
+        let other = if same_bits(&state.built, &self.built) { None } else { Some(self.model_of(&state.built)?.1) };
         other.as_ref().unwrap_or(&self.model).check(&mut state.model).map_err(|error| error.to_string())
     }
 

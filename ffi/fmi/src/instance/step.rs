@@ -5,6 +5,7 @@ use enmm::cosimulation::{CosimulationError, Event, EventKind, Interval};
 use crate::log::{Category, Status};
 use crate::phase::{Call, Phase};
 
+use super::ramps::Rate;
 use super::{Failure, Instance};
 
 /// Part of the experiment by which sums of steps may pass the stop time.
@@ -20,6 +21,8 @@ pub struct Step {
     begin: f64,
     end: f64,
     events_seen: usize,
+    /// Values at the end of inputs that have a derivative.
+    ramps: Vec<Rate>,
     /// Whether it ends before the end that was asked for.
     early: bool,
     done: bool,
@@ -67,10 +70,11 @@ impl Instance {
         if !now {
             return Err(CosimulationError::Time { given: t, own: self.time }.to_string());
         }
+        let ramps = self.begin_ramps(h)?;
         let interval = self.model.begin(self.model.time(), h).map_err(|error| error.to_string())?;
         self.cache.clear();
         self.phase = Phase::Stepping;
-        Ok(Step { interval, begin: self.time, end, events_seen: 0, early: false, done: false })
+        Ok(Step { interval, begin: self.time, end, events_seen: 0, ramps, early: false, done: false })
     }
 
     /// Difference (s) below which two times of the importer near `t` are the same: the digits that its sums lose. Far
@@ -101,6 +105,7 @@ impl Instance {
     fn finish(&mut self, step: &mut Step) -> Status {
         step.done = true;
         (self.phase, self.time) = (Phase::Step, step.end);
+        self.end_ramps(&step.ramps);
         let unsettled = step.interval.info().unsettled;
         if unsettled > 0 {
             let text = format!("the contacts of {unsettled} sub-steps did not settle; they went on unsettled");
@@ -108,6 +113,7 @@ impl Instance {
         }
         self.warn_of(step.interval.info().doubt.clone());
         self.warn_of_failure(step.interval.info().failure);
+        self.warn_of_lost_record();
         Status::Ok
     }
 

@@ -31,19 +31,22 @@ impl Instance {
             let v = self.variable(reference, kind)?;
             let (own, others) = rest.split_at(v.size());
             rest = others;
-            match v.causality {
-                Causality::Input => {}
-                Causality::Parameter if v.is_tunable => {}
-                Causality::Parameter => self.allow(Call::SetParameter).map_err(|failure| {
-                    format!("{}: {failure}; parameters hold from the end of initialization on", v.name)
-                })?,
-                Causality::Output | Causality::Independent => {
-                    return Err(format!("{}: cannot be set, only read", v.name));
-                }
-            }
+            self.check_settable(v)?;
             own.iter().try_for_each(|&value| v.check(value))?;
         }
         Ok(())
+    }
+
+    /// Whether a variable can be set now.
+    pub(super) fn check_settable(&self, v: &Variable) -> Result<(), Failure> {
+        match v.causality {
+            Causality::Input => Ok(()),
+            Causality::Parameter if v.is_tunable => Ok(()),
+            Causality::Parameter => self
+                .allow(Call::SetParameter)
+                .map_err(|failure| format!("{}: {failure}; parameters hold from the end of initialization on", v.name)),
+            Causality::Output | Causality::Independent => Err(format!("{}: cannot be set, only read", v.name)),
+        }
     }
 
     fn store(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
@@ -64,7 +67,7 @@ impl Instance {
             let name = |reference| self.table.get(reference).map_or("", |v| v.name.as_str());
             pushed.map_err(|error| format!("{}: {error}", name(reference)))?;
         }
-        Ok(())
+        self.jump_in_event_mode(references)
     }
 
     /// Gives a model that has started the values of its tunable parameters among the variables; one that has not is

@@ -1,6 +1,8 @@
 //! Getters and setters of all types that variables have: values of the importer, numbers of the instance.
 
-use super::{MISSING, fill, room, slice};
+use std::ffi::c_char;
+
+use super::{MISSING, fill, room, slice, texts};
 use crate::instance::Instance;
 use crate::log::Status;
 use crate::phase::Call;
@@ -57,5 +59,44 @@ pub unsafe fn set<T: Copy>(
             instance.set(references, kind, &numbers)
         }
         _ => instance.refuse(MISSING),
+    }
+}
+
+/// Reads texts, which belong to the instance and stay until the next call of this function.
+///
+/// # Safety
+/// The importer gives as many references and room for as many values as it says.
+pub unsafe fn get_texts(
+    instance: &mut Instance,
+    (references, n): (*const u32, usize),
+    (values, n_values): (*mut *const c_char, usize),
+) -> Status {
+    // SAFETY: by the contract of this function.
+    match unsafe { (slice(references, n), room(values, n_values)) } {
+        (Some(references), Some(values)) => {
+            let status = instance.expects(Call::Get, references, Type::String, n_values);
+            if status != Status::Ok {
+                return status;
+            }
+            fill(values, std::iter::repeat(instance.text().as_ptr()));
+            Status::Ok
+        }
+        _ => instance.refuse(MISSING),
+    }
+}
+
+/// Sets texts.
+///
+/// # Safety
+/// The importer gives as many references and texts as it says.
+pub unsafe fn set_texts(
+    instance: &mut Instance,
+    (references, n): (*const u32, usize),
+    (values, n_values): (*const *const c_char, usize),
+) -> Status {
+    // SAFETY: by the contract of this function.
+    match unsafe { (slice(references, n), texts(values, n_values)) } {
+        (Some(references), Some(values)) => instance.set_texts(references, &values),
+        _ => instance.refuse("a text is missing or no UTF-8, or a pointer is NULL or misaligned; give all"),
     }
 }

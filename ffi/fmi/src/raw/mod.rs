@@ -4,7 +4,7 @@
 mod accessors;
 pub mod states;
 
-pub use accessors::{get, set};
+pub use accessors::{get, get_texts, set, set_texts};
 
 use std::ffi::{CStr, CString, c_char};
 use std::mem::MaybeUninit;

@@ -96,6 +96,17 @@ impl Instance<'_> {
         unsafe { fmi2SetReal(self.component, &self.fmu.reference(name), 1, &value) }
     }
 
+    pub fn get(&self, name: &str) -> f64 {
+        let mut value = f64::NAN;
+        assert_eq!(unsafe { fmi2GetReal(self.component, &self.fmu.reference(name), 1, &mut value) }, OK, "{name}");
+        value
+    }
+
+    /// Sets the derivative of an order.
+    pub fn set_rate(&self, name: &str, order: i32, rate: f64) -> Status {
+        unsafe { fmi2SetRealInputDerivatives(self.component, &self.fmu.reference(name), 1, &order, &rate) }
+    }
+
     pub fn step(&self, t: f64, h: f64) -> Status {
         fmi2DoStep(self.component, t, h, 1)
     }

@@ -29,6 +29,15 @@ impl Fmu {
     }
 
     pub fn instantiate(&self, logging: bool, update: Option<IntermediateUpdate>) -> Instance<'_> {
+        self.instantiate_with(logging, update, false)
+    }
+
+    pub fn instantiate_with(
+        &self,
+        logging: bool,
+        update: Option<IntermediateUpdate>,
+        event_mode: bool,
+    ) -> Instance<'_> {
         let log = Box::new(Log::default());
         let token = CString::new(self.table.token.as_str()).unwrap();
         let path = CString::new(format!("{}/", self.resources().display())).unwrap();
@@ -36,7 +45,20 @@ impl Fmu {
         let (environment, no, take) = ((&raw const *log).cast_mut().cast(), false, Some(take_line as LogMessage));
         let pointer = unsafe {
             let (token, path) = (token.as_ptr(), path.as_ptr());
-            fmi3InstantiateCoSimulation(name, token, path, no, logging, no, no, null(), 0, environment, take, update)
+            fmi3InstantiateCoSimulation(
+                name,
+                token,
+                path,
+                no,
+                logging,
+                event_mode,
+                no,
+                null(),
+                0,
+                environment,
+                take,
+                update,
+            )
         };
         assert!(!pointer.is_null(), "{:?}", log.lines);
         Instance { fmu: self, pointer, log }
