@@ -105,7 +105,8 @@ class Fmu:
         return {v.name: v for v in self.description.modelVariables}
 
     def named(self, causality: str) -> list:
-        return [v for v in self.description.modelVariables if v.causality == causality]
+        """Variables of a causality, except texts."""
+        return [v for v in self.description.modelVariables if v.causality == causality and v.type != "String"]
 
     def outputs(self) -> list[str]:
         """Names of all outputs that are numbers."""

@@ -70,7 +70,9 @@ def test_capabilities(fmu):
             "canReturnEarlyAfterIntermediateUpdate",
         ):
             assert co[name] == "true"
-        assert co["hasEventMode"] == "false"
+        assert co["hasEventMode"] == "true"
+    else:
+        assert co["canInterpolateInputs"] == "true"
 
 
 def test_head_says_whose_the_model_is_and_how_names_are_made(fmu):
@@ -101,12 +103,12 @@ def test_every_variable_is_described_with_a_unit_that_is_defined(fmu):
     bare = set()
     for v in fmu.description.modelVariables:
         assert v.description and len(v.description) > 3, v.name
-        assert v.causality in {"independent", "parameter", "input", "output"}
+        assert v.causality in {"independent", "parameter", "input", "output", "local"}
         if v.unit is None:
             bare.add(v.name)
         else:
             assert v.unit in units and units[v.unit].baseUnit is not None, v.name
-        if v.type in ("Integer", "Int32", "Boolean", "Binary"):
+        if v.type in ("Integer", "Int32", "Boolean", "String", "Binary"):
             assert v.unit is None
     for v in fmu.description.modelVariables:
         if re.search(r"force|stress|displacement|velocity|energy|pressure|traction|_deg|density|young", v.name):
@@ -132,7 +134,7 @@ def test_units_have_their_dimensions(fmu, unit, exponents):
 
 def test_variability_initial_and_start_go_together(fmu):
     for v in fmu.description.modelVariables:
-        discrete = v.type in ("Integer", "Int32", "Boolean", "Binary")
+        discrete = v.type in ("Integer", "Int32", "Boolean", "String", "Binary")
         match v.causality:
             case "parameter":
                 tunable = v.name.endswith((".friction", ".cohesion", ".tension", "damping", "water.density"))
@@ -141,7 +143,7 @@ def test_variability_initial_and_start_go_together(fmu):
             case "input":
                 assert v.start is not None
                 assert v.variability == ("discrete" if discrete else "continuous")
-            case "output":
+            case "output" | "local":
                 assert v.initial == "calculated" and v.start is None, v.name
                 assert not (discrete and v.variability == "continuous")
             case "independent":
@@ -187,7 +189,7 @@ def test_dependencies_say_which_outputs_follow_inputs_at_once(fmu, opened):
 
 def test_limits_hold_start_values(fmu):
     for v in fmu.description.modelVariables:
-        if v.start is None or size(v) > 1 or v.type == "Boolean":
+        if v.start is None or size(v) > 1 or v.type in ("Boolean", "String"):
             continue
         low, high = float(v.min or "-inf"), float(v.max or "inf")
         assert low <= float(v.start) <= high, v.name
@@ -222,7 +224,7 @@ def test_getters_give_the_start_values(fmu, opened):
 
 def test_every_variable_can_be_read_in_every_mode_in_which_it_has_a_value(fmu, opened):
     instance = opened(fmu)
-    names = [v.name for v in fmu.description.modelVariables if v.type != "Binary"]
+    names = [v.name for v in fmu.description.modelVariables if v.type not in ("String", "Binary")]
 
     def all_finite():
         assert all(abs(value) < float("inf") for value in instance.get(*names))

@@ -258,8 +258,6 @@ def test_other_kinds_of_instances_are_refused(fmu, opened):
     for function in ("ModelExchange", "ScheduledExecution"):
         instance = opened(fmu, function=function)
         assert instance.pointer is None and instance.log[-1][0] == ERROR
-    instance = opened(fmu, event_mode=True)
-    assert instance.pointer is None and "event" in instance.log[-1][2]
 
 
 TOKEN = "00000000-0000-5000-8000-000000000000"

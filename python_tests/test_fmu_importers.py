@@ -4,11 +4,15 @@ Their packages have libraries for Linux on x86-64 alone, as `requirements.txt` s
 """
 
 import importlib.util
+import math
 import subprocess
 import sys
+import zipfile
+from pathlib import Path
 
 import pytest
-from fmu_support import bits
+from fmpy.validation import validate_fmu
+from fmu_support import Fmu, bits
 
 H, END = 0.01, 0.5
 WAY = ("displacement_x", "displacement_y")
@@ -64,3 +68,38 @@ def test_other_importers_reach_the_same_bits(fmus, opened, case, port, program, 
     assert host.returncode == 0, host.stdout + host.stderr
     (line,) = [line for line in host.stdout.splitlines() if line.startswith("RESULT ")]
     assert bits(map(float.fromhex, line.split()[1:])) == bits(own)
+
+
+VALLEY = Path(__file__).parents[1] / "examples" / "coupling" / "valley"
+
+
+def valley_by_hand(slope, reservoir, steps, friction, inflow):
+    """Both FMUs of the valley by plain calls: values are exchanged after each step."""
+    slope.initialize(**{"joint_law.weak.friction": friction, "water_level": 6.0})
+    reservoir.initialize(inflow=inflow)
+    for k in range(steps):
+        slope.check(slope.set({"water_level": reservoir.get("level")[0]}))
+        reservoir.check(reservoir.set({"displacement_x": slope.get("face.displacement_x")[0]}))
+        slope.run(1, H, first=k)
+        reservoir.run(1, H, first=k)
+    return reservoir.get("level") + slope.get("face.displacement_x", "toe.displacement_x", "toe.displacement_y")
+
+
+def test_a_slope_and_a_reservoir_are_coupled_by_ecos(fmus, opened, tmp_path):
+    """The SSP of the valley, with the parameters of its SSV, and the same two FMUs by plain calls: the same bits."""
+    for package in ("ecospy", "fmpy"):
+        if importlib.util.find_spec(package) is None:
+            pytest.skip(f"{package} has no library for this platform")
+    fmu = fmus["coupled_slope_fmi2.fmu"]
+    words = [sys.executable, str(VALLEY / "pack.py"), str(fmu.path), "-o", str(tmp_path / "valley.ssp"), "--run"]
+    host = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    assert host.returncode == 0, host.stdout + host.stderr
+    shown = [float(line.split()[1]) for line in host.stdout.splitlines() if "::" in line]
+    with zipfile.ZipFile(tmp_path / "valley.ssp") as archive:
+        archive.extract("resources/reservoir.fmu", tmp_path)
+    reservoir = Fmu.unpack(tmp_path / "resources" / "reservoir.fmu", tmp_path / "reservoir")
+    assert validate_fmu(str(reservoir.path)) == []
+    by_hand = lambda *parameters: valley_by_hand(opened(fmu), opened(reservoir), 200, *parameters)
+    last = lambda *parameters: [round(value, 9) for value in by_hand(*parameters)]
+    assert shown == last(math.radians(25.5), 195.0)
+    assert shown != last(math.radians(26.0), 195.0), "the friction of the SSV is that of the run"

@@ -48,8 +48,8 @@ pub struct Dialect {
     pub token: &'static str,
     /// Capabilities of the co-simulation.
     pub capabilities: &'static [(&'static str, &'static str)],
-    /// Writes the variables.
-    pub variables: fn(&mut Xml, &Table) -> io::Result<()>,
+    /// Writes a variable.
+    pub variable: fn(&mut Xml, &Variable) -> io::Result<()>,
     /// Writes the structure of the model.
     pub structure: fn(&mut Xml, &Table) -> io::Result<()>,
 }
@@ -77,7 +77,7 @@ pub fn document(dialect: &Dialect, table: &Table, facts: &Facts) -> io::Result<V
         units(xml, table)?;
         log_categories(xml)?;
         experiment(xml, facts)?;
-        xml.element("ModelVariables", &[], |xml| (dialect.variables)(xml, table))?;
+        xml.element("ModelVariables", &[], |xml| table.variables.iter().try_for_each(|v| (dialect.variable)(xml, v)))?;
         (dialect.structure)(xml, table)
     })?;
     Ok(xml.finish())
@@ -186,6 +186,7 @@ fn causality(variable: &Variable) -> String {
         Causality::Parameter => "parameter",
         Causality::Input => "input",
         Causality::Output => "output",
+        Causality::Local => "local",
     }
     .to_owned()
 }
@@ -201,11 +202,11 @@ fn variability(variable: &Variable) -> String {
     .to_owned()
 }
 
-/// How the first value comes about: given for parameters, calculated for outputs, not to be said for all others.
+/// How the first value comes about: given for parameters, calculated for outputs and locals, not to be said for all others.
 pub fn initial(variable: &Variable) -> Option<(&'static str, String)> {
     match variable.causality {
         Causality::Parameter => Some(("initial", "exact".to_owned())),
-        Causality::Output => Some(("initial", "calculated".to_owned())),
+        Causality::Output | Causality::Local => Some(("initial", "calculated".to_owned())),
         Causality::Independent | Causality::Input => None,
     }
 }

@@ -30,28 +30,12 @@ const DIALECT: Dialect = Dialect {
         ("canSerializeFMUstate", "true"),
         ("providesDirectionalDerivative", "false"),
     ],
-    variables,
+    variable,
     structure,
 };
 
-/// Second names stand behind all others, as variables with the same value reference.
-fn variables(xml: &mut Xml, table: &Table) -> io::Result<()> {
-    table.variables.iter().try_for_each(|v| variable(xml, v, identity(v)))?;
-    let aliases = table.variables.iter().filter_map(|v| Some((v, v.alias?)));
-    aliases.into_iter().try_for_each(|(v, alias)| {
-        let mut attributes = identity(v);
-        for (key, value) in &mut attributes {
-            match *key {
-                "name" => *value = alias.to_owned(),
-                "causality" => *value = "local".to_owned(),
-                _ => {}
-            }
-        }
-        variable(xml, v, attributes)
-    })
-}
-
-fn variable(xml: &mut Xml, variable: &Variable, mut attributes: Vec<(&'static str, String)>) -> io::Result<()> {
+fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
+    let mut attributes = identity(variable);
     attributes.extend(initial(variable));
     let kind = match variable.kind {
         Type::Real => "Real",

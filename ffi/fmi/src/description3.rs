@@ -37,13 +37,9 @@ const DIALECT: Dialect = Dialect {
         ("hasEventMode", "true"),
         ("providesEvaluateDiscreteStates", "false"),
     ],
-    variables,
+    variable,
     structure,
 };
-
-fn variables(xml: &mut Xml, table: &Table) -> io::Result<()> {
-    table.variables.iter().try_for_each(|v| variable(xml, v))
-}
 
 fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     let mut attributes = identity(variable);
@@ -63,15 +59,15 @@ fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
         Type::String => "String",
         Type::Binary => "Binary",
     };
-    if variable.length.is_none() && variable.alias.is_none() && variable.kind != Type::String {
+    if variable.length.is_none() && variable.kind != Type::String {
         return xml.leaf(kind, &attributes);
     }
     xml.element(kind, &attributes, |xml| {
         variable.length.map_or(Ok(()), |length| xml.leaf("Dimension", &[("start", length.to_string())]))?;
-        if variable.kind == Type::String {
-            xml.leaf("Start", &[("value", String::new())])?;
+        match variable.kind {
+            Type::String => xml.leaf("Start", &[("value", String::new())]),
+            _ => Ok(()),
         }
-        variable.alias.map_or(Ok(()), |alias| xml.leaf("Alias", &[("name", alias.to_owned())]))
     })
 }
 

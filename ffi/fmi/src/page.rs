@@ -35,9 +35,12 @@ pub fn page(model: &Cosimulation, table: &Table, facts: &Facts) -> String {
     page += &signs();
     page += &stepping(facts);
     page += &states(table.version);
-    for (causality, heading) in
-        [(Causality::Input, "Inputs"), (Causality::Output, "Outputs"), (Causality::Parameter, "Parameters")]
-    {
+    for (causality, heading) in [
+        (Causality::Input, "Inputs"),
+        (Causality::Output, "Outputs"),
+        (Causality::Parameter, "Parameters"),
+        (Causality::Local, "Former names"),
+    ] {
         page += &variables(table, causality, heading);
     }
     page += &blocks(model);
@@ -117,7 +120,7 @@ fn states(version: Version) -> String {
 }
 
 fn variables(table: &Table, causality: Causality, heading: &str) -> String {
-    let starts = causality != Causality::Output;
+    let starts = !matches!(causality, Causality::Output | Causality::Local);
     let mut rows = String::new();
     for variable in table.variables.iter().filter(|variable| variable.causality == causality) {
         let mut cells =

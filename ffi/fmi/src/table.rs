@@ -43,6 +43,8 @@ pub enum Causality {
     Input,
     /// Read by the importer.
     Output,
+    /// An output under an older name, which importers need not list.
+    Local,
 }
 
 /// Direction of a component.
@@ -145,8 +147,6 @@ pub struct Variable {
     pub kind: Type,
     /// Role.
     pub causality: Causality,
-    /// Second name of the same variable.
-    pub alias: Option<&'static str>,
     /// Order of magnitude of a number that changes continuously.
     pub nominal: Option<f64>,
     /// Start value of a parameter or an input; a Boolean is 0 or 1.
@@ -369,7 +369,6 @@ impl Rows {
             unit,
             kind,
             causality,
-            alias: None,
             nominal: None,
             start: None,
             limits: None,
@@ -549,7 +548,9 @@ impl Rows {
     fn total(&mut self, (total, name, what, unit, kind): TotalRow) {
         let row = self.output(name, what, unit, Quantity::Total(total));
         row.kind = kind;
-        row.alias = (name == ALIAS[1]).then_some(ALIAS[0]);
+        if name == FORMER[0] {
+            row.causality = Causality::Local;
+        }
     }
 
     fn block_outputs(&mut self) {
@@ -638,8 +639,8 @@ const OWN_TOTALS: [TotalRow; 5] = [
     (Total::LastEventSubject, "last_event_subject", "Block or joint of the last event, -1 if none", "", Type::Integer),
 ];
 
-/// Older name of an output, and its name.
-const ALIAS: [&str; 2] = ["sliding_contacts", "slipping_contacts"];
+/// Former name of an output, and its name.
+const FORMER: [&str; 2] = ["sliding_contacts", "slipping_contacts"];
 
 /// Outputs of the whole model that keep the value references they have always had. All others stand behind every other
 /// variable, so that a new row in a table of the engine becomes a new variable and moves none.
@@ -679,9 +680,11 @@ fn totals() -> (Vec<TotalRow>, Vec<TotalRow>) {
     let energies = ENERGIES.iter().enumerate().map(|(k, q)| (Total::Energy(k), q.column, q.text, q.unit, Type::Real));
     let extremes =
         TOTALS.iter().enumerate().map(|(k, q)| (Total::Extreme(k), q.column, q.text, q.unit, kind(q.is_count)));
-    let rows = energies.chain(extremes).chain(OWN_TOTALS);
+    let mut rows: Vec<TotalRow> = energies.chain(extremes).chain(OWN_TOTALS).collect();
+    let known = rows.iter().find(|row| row.1 == FORMER[1]).copied();
+    rows.extend(known.map(|(total, _, what, unit, kind)| (total, FORMER[0], what, unit, kind)));
     let place = |row: &TotalRow| FIRST_TOTALS.iter().position(|name| *name == row.1);
-    let (mut first, later): (Vec<_>, Vec<_>) = rows.partition(|row| place(row).is_some());
+    let (mut first, later): (Vec<_>, Vec<_>) = rows.into_iter().partition(|row| place(row).is_some());
     first.sort_by_key(place);
     (first, later)
 }
@@ -704,6 +707,7 @@ mod tests {
     fn every_first_output_is_in_a_table() {
         let (first, later) = totals();
         assert_eq!(first.iter().map(|row| row.1).collect::<Vec<_>>(), FIRST_TOTALS);
-        assert_eq!(first.len() + later.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len());
+        assert_eq!(first.len() + later.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len() + 1);
+        assert_eq!(later.last().map(|row| row.1), Some(FORMER[0]));
     }
 }

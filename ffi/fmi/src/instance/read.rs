@@ -43,7 +43,7 @@ impl Instance {
                 rest = others;
                 match causality {
                     Causality::Parameter | Causality::Input => own.copy_from_slice(self.values.get(reference)),
-                    Causality::Independent | Causality::Output => self.read(quantity, own),
+                    Causality::Independent | Causality::Output | Causality::Local => self.read(quantity, own),
                 }
             }
             Ok(())
@@ -108,7 +108,9 @@ impl Instance {
                     "{name}: has no start value, and none before initialization mode; enter that, then read it"
                 ))
             }),
-            Phase::Initialization if variables.any(|v| v.causality == Causality::Output) => self.start_model(),
+            Phase::Initialization if variables.any(|v| matches!(v.causality, Causality::Output | Causality::Local)) => {
+                self.start_model()
+            }
             _ => Ok(()),
         }
     }

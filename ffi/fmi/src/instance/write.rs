@@ -45,7 +45,9 @@ impl Instance {
             Causality::Parameter => self
                 .allow(Call::SetParameter)
                 .map_err(|failure| format!("{}: {failure}; parameters hold from the end of initialization on", v.name)),
-            Causality::Output | Causality::Independent => Err(format!("{}: cannot be set, only read", v.name)),
+            Causality::Output | Causality::Local | Causality::Independent => {
+                Err(format!("{}: cannot be set, only read", v.name))
+            }
         }
     }
 
