@@ -202,7 +202,7 @@ fn variability(variable: &Variable) -> String {
     .to_owned()
 }
 
-/// How the first value comes about: given for parameters, calculated for outputs and locals, not to be said for all others.
+/// How the first value comes about: given for parameters, calculated for what is read, not to be said for all others.
 pub fn initial(variable: &Variable) -> Option<(&'static str, String)> {
     match variable.causality {
         Causality::Parameter => Some(("initial", "exact".to_owned())),

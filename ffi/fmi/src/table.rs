@@ -6,8 +6,6 @@ use enmm::model::case::Port;
 use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, MONITOR_QUANTITIES};
 use uuid::Uuid;
 
-use crate::unit;
-
 /// Version of the standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Version {
@@ -170,6 +168,11 @@ impl Variable {
         self.kind == Type::Real && self.causality != Causality::Parameter && !jumps
     }
 
+    /// Whether a length is a motion or a depth of contacts, and not a place.
+    pub fn is_motion(&self) -> bool {
+        ["displacement", "slip", "penetration", "overlap"].iter().any(|word| self.name.contains(word))
+    }
+
     /// Checks a value that is to be set.
     ///
     /// # Errors
@@ -283,7 +286,7 @@ fn set_nominals(variables: &mut [Variable], case: &Case) {
     let (size, stress) = (case.mesh.size, density * gravity * case.mesh.size);
     for v in variables.iter_mut().filter(|v| v.is_continuous()) {
         let magnitude = match v.unit {
-            "m" if unit::is_small_length(v) => 1e-3,
+            "m" if v.is_motion() => 1e-3,
             "m" => size,
             "m/s" | "rad/s" => 1e-2,
             "m/s2" => gravity,

@@ -69,14 +69,9 @@ const MODULUS: f64 = 1e7;
 pub fn display(variable: &Variable) -> Option<&'static Display> {
     let is_large = variable.start.is_some_and(|start| start.abs() >= MODULUS);
     let name = match variable.unit {
-        "m" if !is_small_length(variable) => return None,
+        "m" if !variable.is_motion() => return None,
         "Pa" if is_large => "MPa",
         unit => DISPLAYS.iter().find(|display| display.of == unit)?.name,
     };
     DISPLAYS.iter().find(|display| display.name == name)
-}
-
-/// Whether a length is a motion or a depth of contacts, and not a place.
-pub fn is_small_length(variable: &Variable) -> bool {
-    ["displacement", "slip", "penetration", "settlement", "opening"].iter().any(|word| variable.name.contains(word))
 }

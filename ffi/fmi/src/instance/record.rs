@@ -1,6 +1,6 @@
 //! Results of the instance in a folder that the importer names: those of `enmm run`.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -8,7 +8,6 @@ use enmm_record::Recording;
 
 use crate::log::{Category, Status};
 use crate::phase::Call;
-use crate::raw::c_text;
 use crate::table::Type;
 
 use super::{Failure, Instance};
@@ -16,7 +15,7 @@ use super::{Failure, Instance};
 impl Instance {
     /// The folder of results, which is the only text; it stays until the next call of this function.
     pub fn text(&mut self) -> &CStr {
-        self.cache.text = c_text(&self.values.results_folder);
+        self.cache.text = CString::new(self.values.results_folder.as_str()).unwrap_or_default();
         &self.cache.text
     }
 
