@@ -327,6 +327,11 @@ class Instance:
         sizes = [c_size_t(1), byref(c_int(order)), values] + ([c_size_t(size(v))] if self.version == 3 else [])
         return self.call(function, byref(c_uint32(v.valueReference)), *sizes), list(values)
 
+    def set_rate(self, name: str, rate: float) -> int:
+        """Sets the first derivative of an input (FMI 2)."""
+        reference, order, value = c_uint32(self.fmu.variables[name].valueReference), c_int(1), c_double(rate)
+        return self.call("SetRealInputDerivatives", byref(reference), c_size_t(1), byref(order), byref(value))
+
     # Saved states.
 
     def save(self) -> c_void_p:

@@ -275,3 +275,46 @@ def test_two_slopes_push_each_other(slope_fmu):
     assert max(counts) < 30
     # The toes give way until the spring bears what was taken from them.
     assert (numpy.abs(force) > numpy.abs(0.5 * PRELOAD)).all() and (places[0] < 0.0).all()
+
+
+def lose_the_anchor(instance, h: float) -> numpy.ndarray:
+    """Toe after 0.4 s when its force is lost at once in front of a reservoir of 20 m, whose level the rock raises.
+
+    Implicit: the level goes linearly to its value at the end of each step, which is found by fixed points.
+    """
+    two, foot, width = instance.version == 2, 8.0, 20.0
+    normal = numpy.array([-22.0, 14.0]) / numpy.hypot(14.0, 22.0)
+    instance.initialize(water_level=20.0, interpolate_inputs=not two)
+    face = lambda: numpy.array(instance.get("face.displacement_x", "face.displacement_y"))
+    start, level = face(), 20.0
+    instance.check(instance.set(Slope.values([0.0, 0.0])))
+    if not two:
+        instance.check(instance.call("EnterStepMode"))
+    for k in range(round(END / h)):
+        state, guess, relax, before = instance.save(), level, 0.7, None
+        for _ in range(30):
+            instance.check(instance.set({"water_level": level if two else guess}))
+            if two:
+                instance.check(instance.set_rate("water_level", (guess - level) / h))
+            instance.check(instance.step(k * h, h))
+            pushed = (face() - start) @ normal * (guess - foot) / -normal[0]
+            residual = 20.0 + pushed / width - guess
+            if abs(residual) < 1e-10:
+                break
+            if before is not None:
+                relax *= -before / (residual - before)
+            before, guess = residual, guess + relax * residual
+            instance.check(instance.restore(state))
+        else:
+            raise AssertionError(f"no convergence in step {k}")
+        level = guess
+    return numpy.array(instance.get("toe.displacement_x", "toe.displacement_y"))
+
+
+def test_a_jump_beside_ramps_keeps_the_second_order(slope_fmu, opened):
+    """A derivative of the level (FMI 2) and event mode (FMI 3) keep the sudden loss apart from the linear level."""
+    options = {"event_mode": True} if slope_fmu.version == 3 else {}
+    toes = [lose_the_anchor(opened(slope_fmu, **options), h) for h in (0.04, 0.02, 0.01)]
+    first, second = (numpy.linalg.norm(b - a) for a, b in zip(toes, toes[1:]))
+    assert 3.0 < first / second < 5.0
+    assert second < 1e-6 * numpy.linalg.norm(toes[-1])
