@@ -357,7 +357,7 @@ typedef int32_t enmm_input;
 #endif // __cplusplus
 
 /**
- * What has a number and a name.
+ * Kinds of things that have a number and a name.
  */
 enum enmm_name_kind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -1409,8 +1409,8 @@ enmm_status enmm_get_interpolation(struct enmm_model *model, int32_t *mode);
  * Returns the number of parameters: properties of the case that have a name and can be set. It never changes.
  *
  * Names are such as "joint_law.weak.friction", "rock.granite.young", "damping", "water.density" and
- * "bolt.anchor.active". Values are in SI units, angles in radians. enmm_parameter_range tells which of them may change
- * after the start.
+ * "bolt.anchor.active". Values are in SI units, angles in radians. enmm_parameter_range returns which of them may
+ * change after the start.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
@@ -1482,7 +1482,7 @@ enmm_status enmm_get_parameter(struct enmm_model *model, uint32_t parameter, dou
 /**
  * Sets a parameter.
  *
- * Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of
+ * Before the start the model is rebuilt with the value, and inputs stay; the initial equilibrium is then that of
  * the value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it.
  * Values are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made
  * active is installed at its length of now with its pretension.
@@ -1509,7 +1509,7 @@ enmm_status enmm_name_count(struct enmm_model *model, int32_t kind, size_t *coun
 /**
  * Writes the name of a thing by its kind, a value of enmm_name_kind, and its number, from 0, in UTF-8.
  *
- * What the case does not name has a stand-in: `joint[2]` is a joint of the case by its place there, "bedding trace 4"
+ * Things without a name in the case get one: `joint[2]` is a joint of the case by its place there, "bedding trace 4"
  * (or `joint_set[1] trace 4`) a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9" any other joint trace,
  * which a region of another law has parted or which surrounds an island, and "block 3" a block. `*written` gets the
  * number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only that number.

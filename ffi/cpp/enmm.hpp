@@ -39,6 +39,28 @@ struct Vector {
     double y = 0;
 };
 
+/** Inputs of the whole model as they are set. */
+struct Inputs {
+    Vector gravity;
+    Vector base_acceleration;
+    double water_level = 0;
+    double strength_factor = 1;
+};
+
+/** Inputs of a port as they are set. */
+struct PortInputs {
+    Vector traction;
+    double pressure = 0;
+    Vector velocity;
+};
+
+/** Least and greatest value of a parameter, and whether it may change after the start. */
+struct Range {
+    double low = 0;
+    double high = 0;
+    bool is_tunable = false;
+};
+
 using BlockState = enmm_block_state;
 using Contact = enmm_contact;
 using Energies = enmm_energies;
@@ -49,6 +71,25 @@ using Progress = enmm_progress;
 using StartInfo = enmm_start_info;
 using StepInfo = enmm_step_info;
 using Totals = enmm_totals;
+
+/** Structures in the memory of the library. */
+template <class T>
+class View {
+public:
+    View(const T *first, std::size_t stride, std::size_t count) : first_(first), stride_(stride), count_(count) {}
+
+    std::size_t size() const noexcept { return count_; }
+
+    const T &operator[](std::size_t k) const noexcept
+    {
+        return *reinterpret_cast<const T *>(reinterpret_cast<const char *>(first_) + k * stride_);
+    }
+
+private:
+    const T *first_;
+    std::size_t stride_;
+    std::size_t count_;
+};
 
 namespace detail {
 
@@ -121,6 +162,31 @@ private:
     explicit State(enmm_state *handle) noexcept : handle_(handle) {}
 
     enmm_state *handle_;
+};
+
+/** Samples that go on from saved states, each with parameters of its own; see enmm_rollout. */
+struct Rollout {
+    std::size_t samples = 0;
+    /** One state for all samples, or one for each. */
+    std::vector<const State *> states;
+    /** Names of the parameters that are set in each sample. */
+    std::vector<std::string> parameters;
+    /** Their values, those of one sample after those of another. */
+    std::vector<double> values;
+    /** Communication step (s), and how many of them. */
+    double step = 0;
+    std::size_t steps = 0;
+    /** Ports, and places among the members of PortState behind struct_size. */
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> outputs;
+    std::size_t threads = 1;
+};
+
+/** What a rollout brings. */
+struct RolledOut {
+    /** Outputs, those of one step after those of another, sample by sample; not a number behind a failure. */
+    std::vector<double> values;
+    /** Status of each sample. */
+    std::vector<enmm_status> statuses;
 };
 
 /** Checks a case in TOML without a model of it; files that it names are sought in `base_dir`. Throws as Model does. */
@@ -283,6 +349,34 @@ public:
     /** Inputs that were set since the last step act at once from the start of the next one. */
     void jump() { detail::check(enmm_jump(handle_)); }
 
+    Inputs inputs() const
+    {
+        Inputs inputs;
+        double gravity[2], base[2];
+        detail::check(enmm_get_inputs(handle_, gravity, base, &inputs.water_level, &inputs.strength_factor));
+        inputs.gravity = {gravity[0], gravity[1]};
+        inputs.base_acceleration = {base[0], base[1]};
+        return inputs;
+    }
+
+    /** Force and moment on a block. */
+    std::pair<Vector, double> block_force(std::uint32_t block) const
+    {
+        double force[2], moment = 0;
+        detail::check(enmm_get_block_force(handle_, block, force, &moment));
+        return {{force[0], force[1]}, moment};
+    }
+
+    PortInputs port_inputs(std::uint32_t port) const
+    {
+        PortInputs inputs;
+        double traction[2], velocity[2];
+        detail::check(enmm_get_port_inputs(handle_, port, traction, &inputs.pressure, velocity));
+        inputs.traction = {traction[0], traction[1]};
+        inputs.velocity = {velocity[0], velocity[1]};
+        return inputs;
+    }
+
     // Parameters.
 
     std::size_t parameter_count() const { return detail::number<std::size_t>(handle_, enmm_parameter_count); }
@@ -308,6 +402,22 @@ public:
         });
     }
 
+    std::string parameter_description(std::uint32_t parameter) const
+    {
+        return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
+            return enmm_parameter_description(handle_, parameter, out, capacity, written);
+        });
+    }
+
+    Range parameter_range(std::uint32_t parameter) const
+    {
+        Range range;
+        int32_t tunable = 0;
+        detail::check(enmm_parameter_range(handle_, parameter, &range.low, &range.high, &tunable));
+        range.is_tunable = tunable != 0;
+        return range;
+    }
+
     double parameter(const std::string &name) const
     {
         double value = 0;
@@ -318,6 +428,18 @@ public:
     void set_parameter(const std::string &name, double value)
     {
         detail::check(enmm_set_parameter(handle_, find_parameter(name), value));
+    }
+
+    /** Sets several at once, or none of them. */
+    void set_parameters(const std::vector<std::pair<std::string, double>> &values)
+    {
+        std::vector<std::uint32_t> parameters;
+        std::vector<double> numbers;
+        for (const auto &[name, value] : values) {
+            parameters.push_back(find_parameter(name));
+            numbers.push_back(value);
+        }
+        detail::check(enmm_set_parameters(handle_, parameters.data(), parameters.size(), numbers.data()));
     }
 
     // Ports.
@@ -391,6 +513,16 @@ public:
     std::size_t block_count() const { return detail::number<std::size_t>(handle_, enmm_block_count); }
 
     std::vector<BlockState> block_states() const { return list<BlockState>(enmm_get_block_states); }
+
+    /** The same without a copy: it is there until the next call that changes the model. */
+    View<BlockState> view_block_states() const
+    {
+        const BlockState *first = nullptr;
+        std::size_t stride = 0, count = 0;
+        detail::check(enmm_view_block_states(handle_, &first, &stride, &count));
+        return {first, stride, count};
+    }
+
     std::vector<Contact> contacts() const { return list<Contact>(enmm_get_contacts); }
 
     /** Events from index `first` on. */
@@ -467,11 +599,51 @@ public:
         });
     }
 
-    State deserialize(const std::vector<std::uint8_t> &bytes) const
+    State deserialize(const std::vector<std::uint8_t> &bytes) const { return deserialize_with(bytes, 0); }
+
+    /** As deserialize, for a state that may be of a model that differs in its parameters. */
+    State deserialize_keeping_parameters(const std::vector<std::uint8_t> &bytes) const
     {
-        enmm_state *state = nullptr;
-        detail::check(enmm_state_deserialize(handle_, bytes.data(), bytes.size(), &state));
-        return State(state);
+        return deserialize_with(bytes, ENMM_KEEP_PARAMETERS);
+    }
+
+    // Many at once.
+
+    /** Takes samples on from saved states; see Rollout. The model stays as it is. */
+    RolledOut roll_out(const Rollout &plan) const
+    {
+        RolledOut made;
+        made.values.resize(plan.samples * plan.steps * plan.outputs.size());
+        std::vector<int32_t> statuses(plan.samples);
+        std::vector<enmm_state *> states;
+        for (const State *state : plan.states)
+            states.push_back(state->handle());
+        std::vector<std::uint32_t> parameters, ports, quantities;
+        for (const std::string &name : plan.parameters)
+            parameters.push_back(find_parameter(name));
+        for (const auto &[port, quantity] : plan.outputs) {
+            ports.push_back(port);
+            quantities.push_back(quantity);
+        }
+        if (plan.values.size() != plan.samples * parameters.size())
+            throw Error(ENMM_INVALID_ARGUMENT, "values must have one number for each sample and parameter");
+        auto given = detail::sized<enmm_rollout_plan>();
+        given.samples = plan.samples;
+        given.states = states.data();
+        given.state_count = states.size();
+        given.parameters = parameters.data();
+        given.parameter_count = parameters.size();
+        given.values = plan.values.data();
+        given.step = plan.step;
+        given.steps = plan.steps;
+        given.ports = ports.data();
+        given.quantities = quantities.data();
+        given.output_count = plan.outputs.size();
+        given.threads = plan.threads;
+        detail::check(enmm_rollout(handle_, &given, made.values.data(), made.values.size(), statuses.data()));
+        for (const int32_t status : statuses)
+            made.statuses.push_back(static_cast<enmm_status>(status));
+        return made;
     }
 
     // Results.
@@ -622,6 +794,13 @@ private:
         });
     }
 
+    State deserialize_with(const std::vector<std::uint8_t> &bytes, std::uint32_t flags) const
+    {
+        enmm_state *state = nullptr;
+        detail::check(enmm_state_deserialize_with(handle_, bytes.data(), bytes.size(), flags, &state));
+        return State(state);
+    }
+
     template <class Get>
     static std::vector<Vector> points(Get get)
     {
@@ -638,6 +817,23 @@ private:
     enmm_model *handle_ = nullptr;
     std::shared_ptr<Desk> desk_;
 };
+
+/** Advances models by `h` (s) each, on some threads; returns the status of each, and throws for a wrong call alone. */
+inline std::vector<enmm_status> batch_step(const std::vector<Model *> &models, double h, std::size_t threads = 1)
+{
+    std::vector<enmm_model *> handles;
+    for (const Model *model : models)
+        handles.push_back(model->handle());
+    std::vector<int32_t> statuses(handles.size(), -1); // a wrong call leaves them
+    const enmm_status first = enmm_batch_step(handles.data(), handles.size(), h, threads, statuses.data());
+    std::vector<enmm_status> all;
+    for (const int32_t status : statuses) {
+        if (status < 0)
+            detail::check(first);
+        all.push_back(static_cast<enmm_status>(status));
+    }
+    return all;
+}
 
 } // namespace enmm
 

@@ -9,7 +9,9 @@
  */
 #include <cmath>
 #include <cstdio>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "enmm.hpp"
 
@@ -81,6 +83,43 @@ void errors_are_exceptions(enmm::Model &model)
     }
 }
 
+/** The block with friction of its own in each sample, and the same call by call. */
+void samples_are_as_single_calls(enmm::Model &model, const enmm::State &from, std::uint32_t port)
+{
+    const std::string friction = "joint_law.joint.friction";
+    const double h = model.communication_step();
+    enmm::Rollout plan;
+    plan.samples = 3;
+    plan.states = {&from};
+    plan.parameters = {friction};
+    plan.values = {0.2, 0.4, 0.6};
+    plan.step = h;
+    plan.steps = 5;
+    plan.outputs = {{port, 0}};
+    plan.threads = 2;
+    const auto made = model.roll_out(plan);
+    model.restore(from);
+    const double before = model.parameter(friction);
+    model.set_parameters({{friction, plan.values[1]}});
+    for (std::size_t k = 0; k < plan.steps; ++k) {
+        enmm::batch_step({&model}, h);
+        must(model.port_state(port).displacement_x == made.values.at(plan.steps + k), "a sample has the bits of calls");
+    }
+    must(made.statuses == std::vector<enmm_status>(3, ENMM_OK), "no sample fails");
+    must(model.view_block_states()[0].centroid_x == model.block_states()[0].centroid_x, "a view is the copy");
+    must(model.parameter_range(model.find_parameter(friction)).is_tunable, "friction may change at any time");
+    model.set_parameter(friction, before);
+    model.set_block_force(model.port_block(port), {1, 2}, 3);
+    must(model.block_force(model.port_block(port)).second == 3, "an input is what was set");
+    must(model.inputs().gravity.y == -9.81, "gravity is that of the case");
+    try {
+        enmm::batch_step({&model}, h, 0);
+        must(false, "no thread throws");
+    } catch (const enmm::Error &error) {
+        must(error.status() == ENMM_INVALID_ARGUMENT, "the exception tells the status");
+    }
+}
+
 void run(const char *path)
 {
     enmm::Model model = enmm::Model::from_file(path);
@@ -117,6 +156,7 @@ void run(const char *path)
     must(outline.size() >= 3, "a block has an outline");
     must(model.find_block_at({state.centroid_x, state.centroid_y}) == block, "a block is where its centroid is");
     must(!model.find_block_at({1e6, 1e6}), "no rock is far away");
+    samples_are_as_single_calls(model, copy, model.find_port("block"));
     errors_are_exceptions(model);
     calls_can_be_stopped(model);
 

@@ -156,7 +156,7 @@ pub struct Cosimulation {
     serial: u64,
     /// Threads of steps, when they are more than the caller's own and the model is worth them.
     pool: Option<Arc<Pool>>,
-    /// What looks at calls, and may end them.
+    /// Looks at calls in progress, and may end them.
     watcher: Watcher,
     attendance: Attendance,
 }

@@ -4,7 +4,7 @@ use crate::model::MonitorState;
 
 use super::{Cosimulation, CosimulationError};
 
-/// What has a number and a name.
+/// Kinds of things that have a number and a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Named {
     /// A joint trace, which events of slip and of broken bonds name.

@@ -5,6 +5,9 @@ use std::sync::Mutex;
 
 use super::{Cosimulation, CosimulationError, PORT_QUANTITIES, PortState, Saved, Watch, limits};
 
+/// Most outputs of one call: 8 GiB.
+const OUTPUTS_MAX: usize = 1 << 30;
+
 /// Samples that go on from saved states.
 #[derive(Debug, Clone, Copy)]
 pub struct Rollout<'a> {
@@ -24,6 +27,13 @@ pub struct Rollout<'a> {
     pub outputs: &'a [(usize, usize)],
     /// Number of threads.
     pub threads: usize,
+}
+
+impl Rollout<'_> {
+    /// Number of all outputs; none when they could not be counted.
+    pub fn output_count(&self) -> Option<usize> {
+        self.samples.checked_mul(self.steps)?.checked_mul(self.outputs.len())
+    }
 }
 
 /// Outputs of samples.
@@ -115,9 +125,13 @@ impl Cosimulation {
             let limit = format!("1 or the number of samples, {}", plan.samples);
             return refuse("states", plan.states.len(), limit, "give one for all samples or one for each");
         }
-        if plan.values.len() != plan.samples * plan.parameters.len() {
+        if Some(plan.values.len()) != plan.samples.checked_mul(plan.parameters.len()) {
             let limit = format!("{} samples times {} parameters", plan.samples, plan.parameters.len());
             return refuse("values", plan.values.len(), limit, "give each sample a value of each parameter");
+        }
+        if plan.output_count().is_none_or(|count| count > OUTPUTS_MAX) {
+            let limit = format!("at most {OUTPUTS_MAX} outputs of all samples and steps");
+            return refuse("samples", plan.samples, limit, "take fewer samples or steps at a time");
         }
         if plan.threads == 0 || plan.threads > limits::THREADS_MAX {
             let limit = format!("at least 1 and at most {}", limits::THREADS_MAX);

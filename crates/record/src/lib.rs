@@ -1,4 +1,4 @@
-//! What a model leaves as it goes through time: histories, tables of blocks, frames, pictures, the page, the summary.
+//! Results of a model over time: histories, tables of blocks, frames, pictures, the page, the summary.
 //!
 //! [`Recorder`] writes them for `enmm run`, [`Recording`] for a model that a host drives.
 #![forbid(unsafe_code)]

@@ -36,7 +36,7 @@ const ENUMERATIONS: [[&str; 4]; 7] = [
     ["enmm_input", "Input", "ENMM_INPUT_", "An input."],
     ["enmm_interpolation", "Interpolation", "ENMM_INTERPOLATION_", "How inputs go through a communication step."],
     ["enmm_log_level", "LogLevel", "ENMM_LOG_", "Weight of a message."],
-    ["enmm_name_kind", "NameKind", "ENMM_NAME_", "What has a number and a name."],
+    ["enmm_name_kind", "NameKind", "ENMM_NAME_", "Kinds of things that have a number and a name."],
 ];
 /// Prefix of the flags of a block, and of their documentation.
 const FLAG: [&str; 2] = ["#define ENMM_BLOCK_", "Flag of a block: "];

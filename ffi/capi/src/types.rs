@@ -108,7 +108,7 @@ pub enum enmm_input {
     ENMM_INPUT_PORT = 5,
 }
 
-/// What has a number and a name.
+/// Kinds of things that have a number and a name.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum enmm_name_kind {

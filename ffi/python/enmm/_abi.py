@@ -109,7 +109,7 @@ class LogLevel(IntEnum):
 
 
 class NameKind(IntEnum):
-    """What has a number and a name."""
+    """Kinds of things that have a number and a name."""
 
     JOINT = 0
     """A joint trace, which events name by its number."""

@@ -48,6 +48,11 @@ impl Fmu {
 
     /// A new instance.
     pub fn instance(&self) -> Result<Instance, String> {
+        self.instance_with(false)
+    }
+
+    /// A new instance, in FMI 3 with event mode or without.
+    pub fn instance_with(&self, event_mode: bool) -> Result<Instance, String> {
         let token = CString::new(self.table.token.as_str()).map_err(|error| error.to_string())?;
         let folder = self.folder.display();
         let (name, no) = (c"fuzz".as_ptr(), false);
@@ -64,7 +69,20 @@ impl Fmu {
                 let (token, path, at) = (token.as_ptr(), path.as_ptr(), null_mut());
                 // SAFETY: texts are there.
                 unsafe {
-                    fmi3::fmi3InstantiateCoSimulation(name, token, path, no, no, no, no, null(), 0, at, None, None)
+                    fmi3::fmi3InstantiateCoSimulation(
+                        name,
+                        token,
+                        path,
+                        no,
+                        no,
+                        event_mode,
+                        no,
+                        null(),
+                        0,
+                        at,
+                        None,
+                        None,
+                    )
                 }
             }
         };
@@ -168,10 +186,12 @@ impl Instance {
             match (self.version, kind) {
                 (Version::Two, Type::Real) => fmi2::fmi2GetReal(p, r, n, buffer.pointer()),
                 (Version::Two, Type::Integer) => fmi2::fmi2GetInteger(p, r, n, buffer.pointer()),
+                (Version::Two, Type::String) => fmi2::fmi2GetString(p, r, n, buffer.pointer()),
                 (Version::Two, _) => fmi2::fmi2GetBoolean(p, r, n, buffer.pointer()),
                 (Version::Three, Type::Real) => fmi3::fmi3GetFloat64(p, r, n, buffer.pointer(), n_values),
                 (Version::Three, Type::Integer) => fmi3::fmi3GetInt32(p, r, n, buffer.pointer(), n_values),
                 (Version::Three, Type::Boolean) => fmi3::fmi3GetBoolean(p, r, n, buffer.pointer(), n_values),
+                (Version::Three, Type::String) => fmi3::fmi3GetString(p, r, n, buffer.pointer(), n_values),
                 (Version::Three, Type::Binary) => {
                     let mut sizes = vec![0; n.max(1)];
                     fmi3::fmi3GetBinary(p, r, n, sizes.as_mut_ptr(), buffer.pointer(), n_values)
@@ -198,6 +218,18 @@ impl Instance {
                 (Version::Three, _) => fmi3::fmi3SetFloat64(p, r, n, values.as_ptr(), values.len()),
             }
         }
+    }
+
+    /// Sets derivatives of inputs of the given order (FMI 2).
+    pub fn set_rates(self, references: &[u32], order: i32, rates: &[f64]) -> Status {
+        let (r, n, orders) = (references.as_ptr(), references.len(), vec![order; references.len()]);
+        // SAFETY: so many references, orders and rates are there.
+        unsafe { fmi2::fmi2SetRealInputDerivatives(self.pointer, r, n, orders.as_ptr(), rates.as_ptr()) }
+    }
+
+    /// Enters event mode or step mode (FMI 3).
+    pub fn enter_mode(self, is_event: bool) -> Status {
+        if is_event { fmi3::fmi3EnterEventMode(self.pointer) } else { fmi3::fmi3EnterStepMode(self.pointer) }
     }
 
     /// Derivatives of outputs of the given order.

@@ -73,6 +73,7 @@ pub unsafe extern "C" fn enmm_rollout(
                 threads: plan.threads,
             }
         };
+        pointers::check_capacity(plan.output_count(), capacity)?;
         let made = model.roll_out(&plan)?;
         // SAFETY: promised by the host: as many numbers as samples.
         unsafe {

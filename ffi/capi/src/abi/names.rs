@@ -21,7 +21,7 @@ pub unsafe extern "C" fn enmm_name_count(model: *mut enmm_model, kind: i32, coun
 
 /// Writes the name of a thing by its kind, a value of enmm_name_kind, and its number, from 0, in UTF-8.
 ///
-/// What the case does not name has a stand-in: `joint[2]` is a joint of the case by its place there, "bedding trace 4"
+/// Things without a name in the case get one: `joint[2]` is a joint of the case by its place there, "bedding trace 4"
 /// (or `joint_set[1] trace 4`) a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9" any other joint trace,
 /// which a region of another law has parted or which surrounds an island, and "block 3" a block. `*written` gets the
 /// number of bytes with the closing zero. With `out` NULL and `capacity` 0 the call returns only that number.

@@ -1,5 +1,6 @@
 //! Parameters of the case by name.
 
+use engine::cosimulation::Parameter;
 use libc::c_char;
 
 use super::pointers;
@@ -9,8 +10,8 @@ use crate::types::{enmm_model, enmm_status};
 /// Returns the number of parameters: properties of the case that have a name and can be set. It never changes.
 ///
 /// Names are such as "joint_law.weak.friction", "rock.granite.young", "damping", "water.density" and
-/// "bolt.anchor.active". Values are in SI units, angles in radians. enmm_parameter_range tells which of them may change
-/// after the start.
+/// "bolt.anchor.active". Values are in SI units, angles in radians. enmm_parameter_range returns which of them may
+/// change after the start.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 ///
@@ -61,11 +62,8 @@ pub unsafe extern "C" fn enmm_parameter_name(
     capacity: usize,
     written: *mut usize,
 ) -> enmm_status {
-    with_model(model.addr(), |model| {
-        let name = &model.parameter(parameter)?.name;
-        // SAFETY: promised by the host.
-        unsafe { pointers::fill_text(name, out, capacity, written) }
-    })
+    // SAFETY: promised by the host.
+    unsafe { write_text(model, parameter, |parameter| &parameter.name, (out, capacity, written)) }
 }
 
 /// Writes the SI unit of a parameter, such as "Pa" or "rad"; an empty text for a number without one.
@@ -82,11 +80,8 @@ pub unsafe extern "C" fn enmm_parameter_unit(
     capacity: usize,
     written: *mut usize,
 ) -> enmm_status {
-    with_model(model.addr(), |model| {
-        let unit = model.parameter(parameter)?.unit;
-        // SAFETY: promised by the host.
-        unsafe { pointers::fill_text(unit, out, capacity, written) }
-    })
+    // SAFETY: promised by the host.
+    unsafe { write_text(model, parameter, |parameter| parameter.unit, (out, capacity, written)) }
 }
 
 /// Writes what a parameter means, in words.
@@ -103,10 +98,23 @@ pub unsafe extern "C" fn enmm_parameter_description(
     capacity: usize,
     written: *mut usize,
 ) -> enmm_status {
+    // SAFETY: promised by the host.
+    unsafe { write_text(model, parameter, |parameter| &parameter.description, (out, capacity, written)) }
+}
+
+/// Writes a text of a parameter into a buffer: place, capacity, number of bytes written.
+///
+/// # Safety
+/// As [`pointers::fill_text`].
+unsafe fn write_text(
+    model: *mut enmm_model,
+    parameter: u32,
+    text: fn(&Parameter) -> &str,
+    (out, capacity, written): (*mut c_char, usize, *mut usize),
+) -> enmm_status {
     with_model(model.addr(), |model| {
-        let description = &model.parameter(parameter)?.description;
-        // SAFETY: promised by the host.
-        unsafe { pointers::fill_text(description, out, capacity, written) }
+        // SAFETY: promised by the caller.
+        unsafe { pointers::fill_text(text(model.parameter(parameter)?), out, capacity, written) }
     })
 }
 
@@ -153,7 +161,7 @@ pub unsafe extern "C" fn enmm_get_parameter(model: *mut enmm_model, parameter: u
 
 /// Sets a parameter.
 ///
-/// Before the start the model is built anew with the value, and inputs stay; the initial equilibrium is then that of
+/// Before the start the model is rebuilt with the value, and inputs stay; the initial equilibrium is then that of
 /// the value. After the start a tunable parameter acts from the next step on, until a stage of the case changes it.
 /// Values are part of saved states. Friction angle and cohesion are peak and residual ones alike. A bolt that is made
 /// active is installed at its length of now with its pretension.

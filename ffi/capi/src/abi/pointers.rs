@@ -207,11 +207,17 @@ unsafe fn announce(count: usize, is_null: bool, capacity: usize, written: *mut u
     if is_null {
         return Ok(false);
     }
-    if capacity < count {
-        let message = format!("capacity: is {capacity}, must be at least {count}; ask for it with NULL and 0");
-        return Err(Failure::new(enmm_status::ENMM_BUFFER_TOO_SMALL, message));
-    }
+    check_capacity(count, capacity)?;
     Ok(true)
+}
+
+/// Whether a buffer has room for so many values.
+pub fn check_capacity(count: usize, capacity: usize) -> Outcome {
+    if count <= capacity {
+        return Ok(());
+    }
+    let message = format!("capacity: is {capacity}, must be at least {count}; ask for it with NULL and 0");
+    Err(Failure::new(enmm_status::ENMM_BUFFER_TOO_SMALL, message))
 }
 
 fn check<T>(name: &str, pointer: *const T, count: usize) -> Outcome {

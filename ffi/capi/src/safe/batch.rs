@@ -75,6 +75,13 @@ pub struct Plan<'a> {
     pub threads: usize,
 }
 
+impl Plan<'_> {
+    /// Number of all outputs, at most the largest number that there is.
+    pub fn output_count(&self) -> usize {
+        self.samples.saturating_mul(self.steps).saturating_mul(self.ports.len())
+    }
+}
+
 /// Outputs and outcomes of samples.
 pub struct Made {
     /// Outputs, sample by sample.

@@ -245,7 +245,7 @@ impl Instance {
         Ok(())
     }
 
-    /// exitInitializationMode: builds the model anew if parameters have changed, and seeks the initial equilibrium. A
+    /// exitInitializationMode: rebuilds the model if parameters have changed, and seeks the initial equilibrium. A
     /// warning when that was not reached.
     pub fn exit_initialization(&mut self) -> Status {
         let legal = self.allow(Call::ExitInitialization);
@@ -295,7 +295,7 @@ impl Instance {
         self.warn_of(failure.map(|failure| format!("the slope has failed {failure}")));
     }
 
-    /// Warns of a motion that is worthless, of which no status tells.
+    /// Warns of a motion that is worthless: no status says so.
     fn warn_of(&mut self, doubt: Option<String>) {
         if let Some(text) = doubt {
             self.log(Status::Warning, Category::Warning, text);

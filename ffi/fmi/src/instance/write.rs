@@ -73,7 +73,7 @@ impl Instance {
     }
 
     /// Gives a model that has started the values of its tunable parameters among the variables; one that has not is
-    /// built anew at the end of initialization.
+    /// rebuilt at the end of initialization.
     fn tune(&mut self, references: &[u32]) -> Result<(), Failure> {
         if !self.model.is_started() {
             return Ok(());

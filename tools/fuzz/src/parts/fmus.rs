@@ -24,7 +24,8 @@ pub fn make() -> Result<Act, String> {
     Ok(Box::new(move |random, trace| {
         let fmu = &fmus[random.below(2)];
         trace.say(|| format!("FMI {:?}", fmu.version));
-        let mut importer = Importer { fmu, instance: fmu.instance()?, time: 0.0, states: Vec::new() };
+        let mut importer =
+            Importer { fmu, instance: fmu.instance_with(random.chance(50))?, time: 0.0, states: Vec::new() };
         let done = (0..CALLS).try_for_each(|_| importer.act(random, trace));
         importer.instance.free();
         if importer.instance.reset() != Status::Error {
@@ -48,7 +49,8 @@ impl Importer<'_> {
             0 => self.life(random, trace)?,
             1 | 2 => self.begin(random, trace),
             3..=7 => self.step(random, trace)?,
-            8..=11 => self.get(random, trace)?,
+            8..=10 => self.get(random, trace)?,
+            11 => self.events(random, trace),
             12..=15 => self.set(random, trace),
             _ => self.state(random, trace)?,
         };
@@ -65,7 +67,7 @@ impl Importer<'_> {
             1 => {
                 let dead = self.instance;
                 dead.free();
-                self.instance = self.fmu.instance()?;
+                self.instance = self.fmu.instance_with(random.chance(50))?;
                 self.time = 0.0;
                 if dead.enter(0.0) != Status::Error {
                     return Err("a dead instance is not refused".to_owned());
@@ -129,7 +131,8 @@ impl Importer<'_> {
     }
 
     fn get(&mut self, random: &mut Random, trace: &mut Trace) -> Result<(&'static str, Status), String> {
-        let kind = random.pick(&[Type::Real, Type::Real, Type::Real, Type::Integer, Type::Boolean, Type::Binary]);
+        let kinds = [Type::Real, Type::Real, Type::Real, Type::Integer, Type::Boolean, Type::String, Type::Binary];
+        let kind = random.pick(&kinds);
         let three = self.fmu.version == Version::Three;
         let kind = if kind == Type::Binary && !three { Type::Real } else { kind };
         let (references, size) = self.references(kind, random.pick(&[None, Some(Causality::Output)]), random);
@@ -178,6 +181,24 @@ impl Importer<'_> {
         let values: Vec<f64> = (0..size).map(|_| value(random)).collect();
         trace.say(|| format!("set {kind:?} {causality:?} {references:?} to {values:?}"));
         ("set", self.instance.set(kind, &references, &values))
+    }
+
+    /// Ramps of FMI 2, modes of FMI 3.
+    fn events(&mut self, random: &mut Random, trace: &mut Trace) -> (&'static str, Status) {
+        if self.fmu.version == Version::Three {
+            let is_event = random.chance(30);
+            trace.say(|| format!("event mode {is_event}"));
+            return ("mode", self.instance.enter_mode(is_event));
+        }
+        let causality = random.pick(&[Causality::Input, Causality::Input, Causality::Output]);
+        let (references, _) = self.references(Type::Real, Some(causality), random);
+        let rates: Vec<f64> = references
+            .iter()
+            .map(|_| if random.chance(10) { random.wild() } else { random.between(-10.0, 10.0) })
+            .collect();
+        let order = if random.chance(90) { 1 } else { random.pick(&[0, 2, -1]) };
+        trace.say(|| format!("rates {order} of {references:?}: {rates:?}"));
+        ("rates", self.instance.set_rates(&references, order, &rates))
     }
 
     fn state(&mut self, random: &mut Random, trace: &mut Trace) -> Result<(&'static str, Status), String> {
