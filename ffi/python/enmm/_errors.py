@@ -1,5 +1,7 @@
 """What can go wrong, as exceptions: one class for each status of the C library."""
 
+import warnings
+from collections.abc import Iterable
 from enum import IntEnum
 
 
@@ -20,6 +22,20 @@ class Status(IntEnum):
     WRONG_STATE = 11
     PANIC = 12
     INTERRUPTED = 13
+
+
+class EnmmWarning(UserWarning):
+    """Something that a user should know of a case or its results; `warnings.filterwarnings` chooses what it does."""
+
+
+class EquilibriumWarning(EnmmWarning):
+    """The model was not at rest at the end of its initial equilibrium, or the slope failed in it."""
+
+
+def warn(texts: Iterable[str], kind: type[EnmmWarning] = EnmmWarning, depth: int = 1) -> None:
+    """Warns the caller of the function so many calls above this one."""
+    for text in texts:
+        warnings.warn(text, kind, stacklevel=depth + 2)
 
 
 class LibraryError(OSError):
@@ -66,7 +82,7 @@ class CaseError(EnmmError, ValueError):
     """The case cannot be used; the message has file, line and key."""
 
 
-class CaseFileError(EnmmError):
+class CaseFileError(EnmmError, OSError):
     """A file cannot be read."""
 
 
