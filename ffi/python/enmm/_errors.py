@@ -1,5 +1,8 @@
 """What can go wrong, as exceptions: one class for each status of the C library."""
 
+import contextlib
+import os
+import sys
 import warnings
 from collections.abc import Iterable
 from enum import IntEnum
@@ -32,10 +35,17 @@ class EquilibriumWarning(EnmmWarning):
     """The model was not at rest at the end of its initial equilibrium, or the slope failed in it."""
 
 
-def warn(texts: Iterable[str], kind: type[EnmmWarning] = EnmmWarning, depth: int = 1) -> None:
-    """Warns the caller of the function so many calls above this one."""
+_INNER = (os.path.dirname(__file__), contextlib.__file__)
+"""Files whose calls are none of a user's."""
+
+
+def warn(texts: Iterable[str], kind: type[EnmmWarning] = EnmmWarning) -> None:
+    """Warns of the line that called the package."""
+    depth, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_INNER):
+        depth, frame = depth + 1, frame.f_back
     for text in texts:
-        warnings.warn(text, kind, stacklevel=depth + 2)
+        warnings.warn(text, kind, stacklevel=depth)
 
 
 class LibraryError(OSError):

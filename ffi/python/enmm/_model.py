@@ -211,7 +211,7 @@ class Model(Closing):
             return self
         self._core.set_log(lambda level, message: self._untold.append((level, message)))
         self._core.set_log(None)
-        warn((message for level, message in self._untold if level <= LogLevel.WARNING), depth=2)
+        warn((message for level, message in self._untold if level <= LogLevel.WARNING))
         return self
 
     def close(self) -> None:
@@ -270,9 +270,9 @@ class Model(Closing):
         if not info.settled:
             text = f"the model is not at rest at time 0 (unbalanced ratio {info.unbalanced:.2e})"
             remedy = "the slope moves, or its static stage needs a longer duration"
-            warn([f"{text}: {remedy}"], EquilibriumWarning, depth=3)
+            warn([f"{text}: {remedy}"], EquilibriumWarning)
         elif info.failed:
-            warn(["the slope has failed in the initial equilibrium"], EquilibriumWarning, depth=3)
+            warn(["the slope has failed in the initial equilibrium"], EquilibriumWarning)
 
     def do_step(self, t: float, h: float, *, progress: ProgressFunction | None = None) -> StepInfo:
         """Advances the model from `t` to exactly `t + h` (s), or not at all.

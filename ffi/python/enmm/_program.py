@@ -1,6 +1,5 @@
 """Finding the program `enmm` and running it."""
 
-import hashlib
 import json
 import os
 import re
@@ -64,6 +63,8 @@ def case_file(case: CaseLike) -> Generator[Path]:
         yield file_of(case)
         return
     case = Case.of(case)
+    import hashlib  # Here, so that the import of the package stays short.
+
     folder = _places.make()
     try:
         path = folder / f"case-{hashlib.sha256(case.to_toml().encode()).hexdigest()[:12]}.toml"
@@ -177,7 +178,7 @@ def _listen(process: "subprocess.Popen[str]", hear: Hear) -> tuple[str, str]:
     process.wait()
     reader.join()
     if raised:
-        raise raised[0]
+        raise raised.pop()  # Kept by nothing here, so that it ends with its results.
     return "".join(kept[0]), "".join(kept[1])
 
 

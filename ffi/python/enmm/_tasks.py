@@ -75,6 +75,8 @@ def run(
         raise failure(status, message)
     if status == INTERRUPTED:
         raise KeyboardInterrupt(message)
+    if result:  # Its directory may be another one where the exception arrives.
+        message = message.replace(str(result.checkpoint), "the `result.checkpoint` of this exception")
     raise RunError(message, Status.NUMERICAL_FAILURE, result._read() if result else Result(directory))
 
 

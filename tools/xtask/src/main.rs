@@ -78,6 +78,7 @@ fn main() -> ExitCode {
         ["bits", ref words @ ..] => bits::run(&repository, words).map(|()| ExitCode::SUCCESS),
         ["schema"] => tasks::write_schema(&repository).map(|()| ExitCode::SUCCESS),
         ["reference"] => book::write_reference(&repository).map(|()| ExitCode::SUCCESS),
+        ["api"] => python::write_api(&repository).map(|()| ExitCode::SUCCESS),
         ["book"] => book::build(&repository).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&repository).map(|()| ExitCode::SUCCESS),
         _ => Err(usage()),
