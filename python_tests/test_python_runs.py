@@ -106,6 +106,7 @@ def test_what_does_not_act_on_the_model_is_no_part_of_the_fingerprint(package, s
         ({"mesh.size": None}, "InvalidArgumentError", "mesh.size: is None"),
         ({"mesh.size": 1j}, "InvalidArgumentError", "mesh.size: is 1j"),
         ({"mesh.sise": 1.0}, "CaseError", "did you mean `size`"),
+        ({"joint_law.joint.frict": 30.0}, "CaseError", "did you mean `friction_deg`"),
         ({"joint_law.joint.friction_deg": 350}, "CaseError", "less than 90"),
         ({"rock.rock.young": "hard"}, "CaseError", "young"),
         ({"mesh.origin": Shape("Polygon", [[[0, 0], [1, 0], [1, 1]], []])}, "InvalidArgumentError", "with holes"),
@@ -177,6 +178,10 @@ def test_frames_are_those_that_vtk_reads(package, results):
     areas = [0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)) for x, y in (p.T for p in frame.polygons())]
     # Strains of 1e-4 change the area of 7 m2 by less than 1e-3.
     assert min(areas) > 0 and abs(sum(areas) - 7.0) < 1e-3
+    cells = frame.to_pyvista()
+    assert cells.n_cells == len(frame.ends) and cells.point_data["displacement"].shape == (len(frame.points), 3)
+    assert np.array_equal(cells.cell_data["mean_stress"], frame.cell_data["mean_stress"])
+    assert np.allclose(cells.compute_cell_sizes().cell_data["Area"], areas)
     displaced = frame.of_elements("displacement")
     assert displaced.shape == frame.ends.shape and displaced.max() == pytest.approx(0.0225, rel=0.1)
     with pytest.raises(KeyError, match="there are: displacement"):
