@@ -43,8 +43,12 @@ class Collapse(TypedDict):
     """How they move, in words."""
 
 
-class Bound(TypedDict, total=False):
-    """Bounds of the factor of safety by limit analysis."""
+class Bound(TypedDict):
+    """Bounds of the factor of safety by limit analysis.
+
+    Rock that yields has `lower`, `upper`, `triangles`, `programs`, `notes` and `warnings` alone; rigid blocks have all
+    others.
+    """
 
     associated: Collapse
     """Upper bound: joints dilate by their friction."""
@@ -58,9 +62,9 @@ class Bound(TypedDict, total=False):
     """The least of the bounds over level tops."""
     estimate: Collapse | None
     """No bound: joints dilate as the case says."""
-    lower: Collapse
+    lower: NotRequired[Collapse]
     """Lower bound, of rock that yields."""
-    upper: Collapse
+    upper: NotRequired[Collapse]
     """Upper bound, of rock that yields."""
     bare_share: float | None
     """Share of the cohesion that opens."""
@@ -82,7 +86,7 @@ class Bound(TypedDict, total=False):
     """Contacts at corners."""
     programs: int
     """Linear programs that were solved."""
-    triangles: dict[str, int]
+    triangles: NotRequired[dict[str, int]]
     """Triangles of each bound, of rock that yields."""
     notes: list[str]
     """Remarks."""
