@@ -407,6 +407,15 @@ def test_a_worker_of_dask_that_is_killed_loses_nothing(ensemble, variables, tabl
     assert killed and found._csv() == table
 
 
+def test_options_may_be_names_and_are_checked_before_any_sample(ensemble, package, variables):
+    stage = {"stage": block()["stage[0].name"]}
+    named = ensemble.run(block(), variables, 2, options=QUICK | stage)
+    assert (named.values == ensemble.run(block(), variables, 2, options=QUICK).values).all()
+    for n, options, message in ((0, QUICK, "n: is 0, must be from 1"), (2, {"tolerance": 3}, "tolerance: is 3")):
+        with pytest.raises(package.InvalidArgumentError, match=message):
+            ensemble.run(block(), variables, n, options=options)
+
+
 def test_programs_that_are_killed_are_started_again(ensemble, package, variables, table, monkeypatch):
     killed = []
 

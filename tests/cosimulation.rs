@@ -506,6 +506,37 @@ fn ports_are_found_by_name_and_their_blocks_take_forces_by_id_or_number() {
     assert!(error.starts_with("port: is 3, must be less than the number of ports, 3;"), "{error}");
 }
 
+/// A contact that opens is forgotten, with the slip that it has summed up.
+#[test]
+fn the_slip_of_a_port_never_falls() {
+    let mut slope = model("coupled_slope");
+    slope.start().unwrap();
+    let plane = slope.find_port("plane").unwrap();
+    let now = |slope: &Cosimulation| slope.port_state(plane).slip;
+    let of_contacts = |slope: &Cosimulation| {
+        let boundary = &slope.simulation().model().boundary;
+        let contacts = slope.simulation().state().contacts.iter();
+        let of_port = contacts.filter(|contact| slope.ports()[plane].has(contact, boundary));
+        of_port.map(|contact| contact.slip).fold(0.0, f64::max)
+    };
+    let (mut last, mut forgotten) = (now(&slope), false);
+    assert!(last > 0.0);
+    for k in 0..128 {
+        let level = 6.0 + 0.05 * f64::from(k);
+        slope.set_water_level(level).unwrap();
+        slope.set_pressure(plane, 0.6 * 9.81e3 * (level - 9.0_f64).max(0.0)).unwrap();
+        let end = slope.time() + 0.01;
+        go(&mut slope, end);
+        assert!(now(&slope) >= last, "step {k}: {last} m, then {} m", now(&slope));
+        last = now(&slope);
+        forgotten |= of_contacts(&slope) < last;
+    }
+    assert!(forgotten, "no contact was forgotten");
+    let mut other = model("coupled_slope");
+    other.restore(&slope.save()).unwrap();
+    assert_eq!(now(&other), last);
+}
+
 #[test]
 fn things_have_the_names_of_the_case_or_stand_ins() {
     let slope = model("fractured_slope");

@@ -5,7 +5,7 @@
 The accelerogram is made here (filtered noise under an envelope, always the same) unless a file gives one: two columns,
 time (s) and horizontal acceleration (in g), comments after #. Every communication step sets the acceleration at its
 end and lets the engine go there linearly. The block has an answer to compare with: Newmark's sliding block, integrated
-here on the same record. Needs numpy, matplotlib and the package in ffi/python; the slope has no closed form.
+here on the same record. Needs matplotlib and the package enmm; the slope has no closed form.
 """
 
 import argparse
@@ -14,12 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "ffi" / "python"))
+try:
+    import enmm
+except ImportError:  # Not installed: that of this repository, with the library that cargo built.
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "ffi" / "python"))
+    import enmm
 
-import enmm  # noqa: E402
-
-CASES = ROOT / "examples" / "cases"
+CASES = enmm.examples()
 G = 9.81
 STEP = 0.01
 INCLINE = np.radians(30.0)
@@ -65,7 +66,7 @@ def drive(model, t, a, observe):
 
 def block_model():
     """The block of the example, with a friction that holds it until the base shakes."""
-    text = (CASES / "block_on_incline.toml").read_text(encoding="utf-8")
+    text = (CASES["block_on_incline"]).read_text(encoding="utf-8")
     return enmm.Model.from_string(text.replace("friction_deg = 20.0", f"friction_deg = {FRICTION_DEG}"))
 
 
@@ -92,7 +93,7 @@ def run(accelerogram=None):
     down = np.array([np.cos(INCLINE), -np.sin(INCLINE)])
     with block_model() as model:
         block = drive(model, t, a, lambda m: m.ports["block"].state()[:2]) @ down
-    with enmm.Model.from_file(CASES / "coupled_slope.toml") as model:
+    with enmm.Model.from_file(CASES["coupled_slope"]) as model:
         outlines = [model.polygon(k) for k in range(model.block_count)]
         slope = drive(model, t, a, lambda m: [np.hypot(*m.ports[p].state()[:2]) for p in ("toe", "face")])
         after = [model.polygon(k) for k in range(model.block_count)]

@@ -7,7 +7,7 @@ joint water follows its level with a delay, as seepage does. The slope gets the 
 the joint water on its weak plane, part by part, and gives its displacement back. Days of a real reservoir are seconds
 here: the slope answers its loads without inertia of its own, until it slides. While the level rises the water on the
 face pushes the slope back; after the fast drawdown the joint water is left behind, and the slope slides until it has
-drained. Needs numpy, matplotlib and the package in ffi/python.
+drained. Needs matplotlib and the package enmm.
 """
 
 import argparse
@@ -16,12 +16,13 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "ffi" / "python"))
+try:
+    import enmm
+except ImportError:  # Not installed: that of this repository, with the library that cargo built.
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "ffi" / "python"))
+    import enmm
 
-import enmm  # noqa: E402
-
-CASE = ROOT / "examples" / "cases" / "coupled_slope.toml"
+CASE = enmm.examples()["coupled_slope"]
 WEIGHT = 1000.0 * 9.81
 STEP = 0.02
 DURATION = 10.0

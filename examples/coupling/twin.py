@@ -7,8 +7,8 @@ three monitors measure how far it slips, with noise. Friction and cohesion are n
 multiple data assimilation (A. A. Emerick and A. C. Reynolds, Computers & Geosciences 55, 2013) begins with wide guesses
 and moves them until the slopes of the ensemble slip as the measured one; the scatter that is left says how well they
 are known. Water tells friction from cohesion: it takes away normal force, and so friction alone. Every slope of the
-ensemble then is a saved state, from which it goes on into a shaking that has not happened yet. Needs numpy, matplotlib
-and the package in ffi/python.
+ensemble then is a saved state, from which it goes on into a shaking that has not happened yet. Needs matplotlib
+and the package enmm.
 """
 
 import argparse
@@ -20,10 +20,11 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "ffi" / "python"))
-
-import enmm  # noqa: E402
+try:
+    import enmm
+except ImportError:  # Not installed: that of this repository, with the library that cargo built.
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "ffi" / "python"))
+    import enmm
 
 STEP = 0.02
 # Shakings (start and length in s, amplitude in m/s²) and the water pressure in the plane (Pa) meanwhile.

@@ -1,4 +1,5 @@
-"""Puts the library, the program and the libraries of FMUs into the wheel, and names the platform it is for.
+"""Puts schema and example cases into the wheel, and the library, the program and the libraries of FMUs; names the
+platform it is for.
 
 `cargo xtask wheel` sets ENMM_BINARIES to the folder that holds them; cross builds set ENMM_PLATFORM to their platform
 as well, such as win-amd64. The library lies in the package, the program among the scripts, and the libraries that
@@ -21,6 +22,9 @@ NAMES = {
 }
 
 
+# Files of the repository that go along, and their places in the data of the package.
+DATA = {"docs/case.schema.json": "case.schema.json", "examples/cases": "cases"}
+
 # Licences of all crates in the binaries, and the list of these crates.
 LICENSES = "LICENSES"
 LIST = "sbom.cdx.json"
@@ -28,6 +32,8 @@ LIST = "sbom.cdx.json"
 
 class WheelHook(BuildHookInterface):
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        repository = Path(self.root).parents[1]
+        build_data["force_include"] |= {str(repository / file): f"enmm/data/{place}" for file, place in DATA.items()}
         given = os.environ.get("ENMM_BINARIES")
         if not given:
             return

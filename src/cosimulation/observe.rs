@@ -29,7 +29,7 @@ pub struct PortState {
     pub normal_force: f64,
     /// Sum of the magnitudes of the shear forces along the joints (N/m).
     pub shear_force: f64,
-    /// Largest accumulated slip of a contact (m).
+    /// Largest slip that a contact has summed up so far (m).
     pub slip: f64,
     /// Mean traction of a quiet boundary on the rock (Pa).
     pub traction: Vector,
@@ -168,12 +168,12 @@ impl Cosimulation {
     ///
     /// # Panics
     /// When there is no such port.
-    pub fn port_motion(&self, port: usize) -> PortState {
-        let port = &self.ports()[port];
+    pub fn port_motion(&self, index: usize) -> PortState {
+        let port = &self.ports()[index];
         match port.kind {
             PortKind::Block => self.block_port(port.block),
             PortKind::Boundary => self.boundary_port(port),
-            PortKind::Joint => self.joint_port(port),
+            PortKind::Joint => self.joint_port(index),
             PortKind::Quiet => {
                 let reaction = self.reaction(port);
                 let length: f64 =
@@ -336,17 +336,13 @@ impl Cosimulation {
         mean
     }
 
-    fn joint_port(&self, port: &Port) -> PortState {
+    fn joint_port(&self, index: usize) -> PortState {
+        let (port, state) = (&self.ports()[index], self.simulation.state());
         let boundary = &self.simulation.model().boundary;
-        let of_port = |contact: &&ContactHistory| {
-            let [before, after] = boundary.edges_of_node(contact.node);
-            [contact.edge, before, after].iter().any(|edge| port.edges.binary_search(edge).is_ok())
-        };
-        let mut sum = PortState::default();
-        for contact in self.simulation.state().contacts.iter().filter(of_port) {
+        let mut sum = PortState { slip: state.events.port_slip[index], ..PortState::default() };
+        for contact in state.contacts.iter().filter(|contact| port.has(contact, boundary)) {
             sum.normal_force += contact.normal_force;
             sum.shear_force += contact.shear_force.abs();
-            sum.slip = sum.slip.max(contact.slip);
         }
         sum
     }

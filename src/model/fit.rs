@@ -377,13 +377,15 @@ impl Simulation {
 
     fn check_events(&self, events: &Events) -> Fit {
         let (blocks, traces) = (self.state().removed.len(), self.model().trace_law.len());
-        let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max } = events;
+        let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max, port_slip } = events;
         length("events.touching", touching.len(), blocks)?;
         length("events.detached", detached.len(), blocks)?;
         length("events.slipped", slipped.len(), traces + 1)?;
         length("events.failed", failed.len(), blocks)?;
         length("events.bonded", bonded.len(), if bonded.is_empty() { 0 } else { traces })?;
         between("events.overlap_max", *overlap_max, 0.0, LENGTH)?;
+        length("events.port_slip", port_slip.len(), self.model().ports.len())?;
+        port_slip.iter().try_for_each(|slip| between("events.port_slip", *slip, 0.0, LENGTH))?;
         for (k, pair) in overlapped.iter().enumerate() {
             pair.iter().try_for_each(|b| index(format_args!("events.overlapped[{k}]"), b.number(), blocks))?;
         }

@@ -69,13 +69,16 @@ pub struct Events {
     pub overlapped: Vec<[BlockId; 2]>,
     /// Greatest depth of these overlaps so far (m); 0 for none.
     pub overlap_max: f64,
+    /// Greatest slip (m) that a contact of each port of joints has summed up so far, also of contacts that have opened
+    /// since and were forgotten; 0 of other ports.
+    pub port_slip: Vec<f64>,
 }
 
-clone_without_allocating!(Events { list touching detached slipped failed bonded overlapped overlap_max });
+clone_without_allocating!(Events { list touching detached slipped failed bonded overlapped overlap_max port_slip });
 
 impl Events {
-    /// Nothing has happened to so many blocks and joint traces.
-    pub fn none(blocks: usize, traces: usize) -> Self {
+    /// Nothing has happened to so many blocks, joint traces and ports.
+    pub fn none(blocks: usize, traces: usize, ports: usize) -> Self {
         Self {
             list: Vec::new(),
             touching: vec![false; blocks],
@@ -85,6 +88,7 @@ impl Events {
             bonded: Vec::new(),
             overlapped: Vec::new(),
             overlap_max: 0.0,
+            port_slip: vec![0.0; ports],
         }
     }
 }

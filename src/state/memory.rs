@@ -194,6 +194,6 @@ fn inputs(inputs: &Inputs) -> usize {
 }
 
 fn events(events: &Events) -> usize {
-    let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max: _ } = events;
-    sum(&[list, touching, detached, slipped, failed, bonded, overlapped])
+    let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max: _, port_slip } = events;
+    sum(&[list, touching, detached, slipped, failed, bonded, overlapped, port_slip])
 }

@@ -1,7 +1,8 @@
 //! The built model: nothing in it changes in time.
 
 use crate::contact::{
-    BoltSegment, Boundary, ContactSetting, DetectionRule, EdgeId, Frames, JointLaw, LawId, Sections, Support,
+    BoltSegment, Boundary, ContactHistory, ContactSetting, DetectionRule, EdgeId, Frames, JointLaw, LawId, Sections,
+    Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
@@ -66,6 +67,14 @@ pub struct Port {
     pub force: Vector,
     /// Moment on the block (N·m/m) or pressure on the faces (Pa) at the start.
     pub scalar: f64,
+}
+
+impl Port {
+    /// Whether a contact lies on its edges.
+    pub fn has(&self, contact: &ContactHistory, boundary: &Boundary) -> bool {
+        let [before, after] = boundary.edges_of_node(contact.node);
+        [contact.edge, before, after].iter().any(|edge| self.edges.binary_search(edge).is_ok())
+    }
 }
 
 /// Water with a level or a sloping surface.

@@ -3,15 +3,15 @@
 use crate::contact::{ContactState, LawId};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::state::{Event, EventKind, Model, State, Workspace};
+use crate::state::{Event, EventKind, Model, PortKind, State, Workspace};
 
 use super::Regime;
 
 /// Slip (m) relative to the mesh size from which a joint counts as slipped.
 const SLIP_MIN: f64 = 1e-6;
 
-/// Notes what the step that ends at `time` (s) has brought; static stages bring nothing but broken bonds, since their
-/// path is no motion.
+/// Notes what the step that ends at `time` (s) has brought; static stages bring nothing but broken bonds and the
+/// slip of ports, since their path is no motion.
 pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Workspace, time: f64) {
     let touching = &mut workspace.motion.touching;
     touching.clear();
@@ -21,6 +21,7 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
         touching[model.boundary.block[node]] = true;
         touching[model.boundary.block[contact.edge]] = true;
     }
+    note_slip_of_ports(model, state);
     if !state.bonds.is_empty() {
         note_broken(model, state, time);
     }
@@ -75,6 +76,19 @@ fn note_slipped(model: &Model, state: &mut State, time: f64) {
             events.slipped[joint] = true;
             let subject = trace.map_or(u32::MAX, |trace| trace.number());
             events.list.push(Event::of(EventKind::Slipped, subject, time));
+        }
+    }
+}
+
+fn note_slip_of_ports(model: &Model, state: &mut State) {
+    for (port, most) in
+        model.ports.iter().zip(&mut state.events.port_slip).filter(|(port, _)| port.kind == PortKind::Joint)
+    {
+        // Most contacts have not slipped farther than the port already has.
+        for contact in &state.contacts {
+            if contact.slip > *most && port.has(contact, &model.boundary) {
+                *most = contact.slip;
+            }
         }
     }
 }

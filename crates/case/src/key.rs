@@ -68,9 +68,11 @@ impl fmt::Display for Key {
 /// Longest name that takes part in a comparison (characters); the rest of a longer one is not looked at.
 const COMPARED_LENGTH: usize = 64;
 
-/// Returns the candidate with the smallest edit distance to `name`, the first of equals, or none if there is none.
+/// Returns the candidate that begins with `name`, which was cut short, or else that with the smallest edit distance to
+/// it; the first of equals, or none if there is none.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    candidates.into_iter().min_by_key(|candidate| edit_distance(name, candidate))
+    let is_cut = |candidate: &str| candidate.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
+    candidates.into_iter().min_by_key(|candidate| (!is_cut(candidate), edit_distance(name, candidate)))
 }
 
 /// Returns the number of insertions, deletions and replacements that turn `a` into `b`, letter case ignored.

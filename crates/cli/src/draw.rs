@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use enmm::engine_version;
 use enmm::model::case::{Ensemble, RandomCorrelation, RandomVariable};
-use enmm_ensemble::{Identity, Value, draw_from, sample_key};
+use enmm_ensemble::{Given, Identity, Value, draw_from, sample_key};
 use serde_json::{Value as Json, from_value, json};
 
 use crate::{BAD_INPUT, OrFail, Outcome, print_line};
@@ -26,7 +26,9 @@ fn answer(text: &str) -> Result<String, String> {
     let random: Vec<RandomVariable> = from_value(random).map_err(wrong)?;
     let correlations: Vec<RandomCorrelation> = from_value(correlations).map_err(wrong)?;
     let ensemble: Ensemble = from_value(ensemble).map_err(wrong)?;
-    let options: BTreeMap<String, f64> = from_value(options).map_err(wrong)?;
+    let options: BTreeMap<String, Json> = from_value(options).map_err(wrong)?;
+    let options = options.into_iter().map(|(name, value)| Some((name, given(&value)?))).collect::<Option<_>>();
+    let options = options.ok_or("options: must be numbers and names")?;
     let [case, output]: [String; 2] = from_value(json!([case, output])).map_err(wrong)?;
     let samples = draw_from(&random, &correlations, &ensemble)
         .map_err(|invalid| format!("{}: {}", invalid.key, invalid.message))?;
@@ -38,6 +40,10 @@ fn answer(text: &str) -> Result<String, String> {
     let rows: Vec<Vec<Json>> = samples.rows.iter().map(|row| row.iter().map(value).collect()).collect();
     let keys: Vec<_> = samples.rows.iter().map(|row| sample_key(&identity, &samples.keys, row)).collect();
     Ok(json!({ "samples": rows, "keys": keys }).to_string())
+}
+
+fn given(option: &Json) -> Option<Given> {
+    option.as_f64().map(Given::Number).or_else(|| option.as_str().map(|name| Given::Name(name.to_owned())))
 }
 
 /// The members of these names of a JSON object.

@@ -3,6 +3,7 @@
 
 mod bench;
 mod bound;
+mod caller;
 mod case;
 mod check;
 mod draw;
@@ -60,6 +61,9 @@ upper bound (enmm fos); 130 interrupted.";
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// End when standard input does, with the process that holds its other end.
+    #[arg(long, global = true, hide = true)]
+    with_caller: bool,
 }
 
 #[derive(Subcommand)]
@@ -105,7 +109,12 @@ enum Command {
 
 fn main() -> ExitCode {
     match Arguments::try_parse() {
-        Ok(arguments) => output::finish(execute(arguments.command).unwrap_or_else(|failure| failure.tell())),
+        Ok(Arguments { command, with_caller }) => {
+            if with_caller {
+                caller::watch();
+            }
+            output::finish(execute(command).unwrap_or_else(|failure| failure.tell()))
+        }
         Err(told) => output::tell(&told),
     }
 }

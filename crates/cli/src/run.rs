@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
+use enmm::model::case::Pictures;
 use enmm_io::LoadedCase;
 use enmm_report::PAGE;
 use enmm_run::summary::OVER;
@@ -35,6 +36,9 @@ pub struct Arguments {
     /// Replace results of another case in the directory.
     #[arg(long)]
     force: bool,
+    /// Draw no pictures, whatever the case says.
+    #[arg(long)]
+    no_pictures: bool,
     /// Print nothing but errors.
     #[arg(long)]
     quiet: bool,
@@ -42,7 +46,10 @@ pub struct Arguments {
 
 /// Runs a case.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
+    let mut loaded = arguments.case.load().or_fail(BAD_INPUT)?;
+    if arguments.no_pictures {
+        loaded.case.output.pictures = Pictures::Usual(false);
+    }
     listen()?;
     let options = RunOptions {
         directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),

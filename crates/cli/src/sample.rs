@@ -148,7 +148,7 @@ fn command(program: &PathBuf, arguments: &Arguments, loaded: &LoadedCase, what: 
     command.args(what.settings.iter().map(|value| format!("--value={value}")));
     let options = what.search.given();
     command.args(options.iter().map(|(name, value)| format!("--{}={value:?}", name.replace('_', "-"))));
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.arg(crate::caller::OPTION).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 
@@ -174,6 +174,8 @@ fn ask(command: &mut Command, what: &Ask, screen: &Count) -> Result<Answer, Stri
 
 /// Reads what a process prints until it ends: its trials, its answer, and its messages.
 fn listen(mut child: Child, mut hear: impl FnMut(&str)) -> std::io::Result<(ExitStatus, Option<Json>, String)> {
+    // The child ends with this process, which alone has the other end of its standard input.
+    let _alive = child.stdin.take();
     let (output, messages) = (child.stdout.take(), child.stderr.take());
     let reader = thread::spawn(move || {
         let mut bytes = Vec::new();

@@ -43,6 +43,24 @@ fn a_second_run_is_refused_with_the_number_of_the_first() {
     assert!(!place.path("out/.enmm.lock").exists(), "and is taken over");
 }
 
+/// A host that dies leaves no run behind; a run of a shell, whose standard input has ended, goes on.
+#[test]
+fn a_run_ends_with_the_caller_that_holds_its_standard_input() {
+    let place = Place::with(&case(1000.0));
+    let mut run = place.start_held(&["run", "case.toml", "-o", "out", "--quiet", "--with-caller"]);
+    wait_for_rows(&place);
+    assert!(run.try_wait().expect("asked").is_none());
+    drop(run.stdin.take());
+    assert_eq!(run.wait().expect("ended").code(), Some(130));
+    assert!(place.path("out/checkpoint.enmm").exists());
+    let mut alone = place.start_held(&["run", "case.toml", "-o", "alone", "--quiet"]);
+    drop(alone.stdin.take());
+    wait_for(&place, "alone/history.csv");
+    assert!(alone.try_wait().expect("asked").is_none());
+    alone.kill().expect("ended");
+    alone.wait().expect("ended");
+}
+
 #[test]
 fn a_folder_that_is_removed_in_a_run_does_not_come_back() {
     let place = Place::with(&case(20.0));

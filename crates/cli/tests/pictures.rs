@@ -37,6 +37,14 @@ fn a_run_draws_the_usual_pictures_at_the_end_of_each_stage() {
 }
 
 #[test]
+fn a_run_without_pictures_draws_none_whatever_its_case_says() {
+    let place = with_output("pictures = [\"energy\"]");
+    place.answers(0, &["run", "case.toml", "--no-pictures"]);
+    assert_eq!(names(&place.path("case")), [""; 0]);
+    assert!(place.path("case/report.html").exists());
+}
+
+#[test]
 fn a_run_draws_the_pictures_of_a_list_alone_and_removes_those_of_the_run_before() {
     let place = with_output("pictures = [\"joint_stress\", \"velocity\", \"covers\"]");
     fs::create_dir(place.path("case")).expect("made");

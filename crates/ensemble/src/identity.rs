@@ -17,7 +17,16 @@ pub struct Identity {
     /// Name of the output.
     pub output: String,
     /// Options of the search that were given.
-    pub options: BTreeMap<String, f64>,
+    pub options: BTreeMap<String, Given>,
+}
+
+/// An option that was given.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Given {
+    /// A number, such as a tolerance.
+    Number(f64),
+    /// A name, such as that of a stage.
+    Name(String),
 }
 
 /// Key of a sample in the store, 64 hexadecimal digits: SHA-256 of lines with all that the sample depends on, numbers
@@ -29,7 +38,12 @@ pub fn sample_key(identity: &Identity, keys: &[String], values: &[Value]) -> Str
         // Writing to a text cannot fail.
         let _ = writeln!(text, "{what} {name} {value}");
     };
-    options.iter().for_each(|(name, value)| line("option", name, bits(*value)));
+    for (name, value) in options {
+        match value {
+            Given::Number(number) => line("option", name, bits(*number)),
+            Given::Name(text) => line("option", name, format!("{text:?}")),
+        }
+    }
     let sorted: BTreeMap<&String, &Value> = keys.iter().zip(values).collect();
     for (key, value) in sorted {
         let value = match value {

@@ -16,7 +16,7 @@ mod variable;
 
 pub use draw::{Samples, Value, draw, draw_from, medians};
 pub use driver::{Lost, work};
-pub use identity::{Identity, sample_key};
+pub use identity::{Given, Identity, sample_key};
 pub use statistics::{Interval, beta, mean, quantile, spearman, standard_deviation, wilson};
 pub use store::{Row, Store, StoreError};
 pub use variable::{Distribution, Variable};

@@ -7,7 +7,7 @@ use crate::key_reference::{Source, find, number_of, sections};
 use crate::support::{CASE, with_geometry};
 use enmm::model::Simulation;
 use enmm_case::keys::Plain;
-use enmm_io::{CaseError, load_case, parse_case, schema};
+use enmm_io::{CaseError, LoadedCase, load_case, parse_case, schema};
 use serde_json::Value;
 
 /// Names of the ends of a range in a schema, closed and open.
@@ -108,6 +108,17 @@ fn fingerprint_changes_with_any_value() {
     let hash = |text: &str| parse_case(text, "slope.toml", Path::new("")).unwrap().hash;
     assert_ne!(hash(CASE), hash(&CASE.replacen("density = 2650", "density = 2651", 1)));
     assert_ne!(hash(CASE), hash(&CASE.replacen("clean", "Clean", 100)));
+}
+
+/// A checkpoint goes on, and a store finds its samples, under another title and with other files to write.
+#[test]
+fn fingerprint_does_not_change_with_what_acts_on_nothing() {
+    let loaded = parse_case(CASE, "slope.toml", Path::new("")).unwrap();
+    let mut other = loaded.case.clone();
+    other.title.push_str(", again");
+    other.output.frames = !other.output.frames;
+    other.fmu = Some(enmm::model::case::FmuNotes { author: Some("A".to_owned()), ..Default::default() });
+    assert_eq!(LoadedCase::of(other, "slope.toml").unwrap().hash, loaded.hash);
 }
 
 /// Found by `cargo xtask fuzz --part cases --seed 7 --from 5850`: the kinetic energy of the first step was no number.

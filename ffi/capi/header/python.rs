@@ -230,11 +230,12 @@ impl Structure {
     /// The class of tuples with its values.
     fn tuple(&self) -> String {
         let comment = self.comment.join(" ");
+        let within = |text: &str| wrapped(text).replace('\n', "\n    ");
         let text = match comment.split_once(". ") {
-            Some((first, rest)) => format!("{first}.\n\n    {}\n    ", wrapped(rest).replace('\n', "\n    ")),
-            None => comment,
+            Some((first, rest)) => format!("{}\n\n    {}\n    ", within(&format!("\"\"\"{first}.")), within(rest)),
+            None => within(&format!("\"\"\"{comment}")),
         };
-        let mut text = format!("\n\nclass {}(NamedTuple):\n    \"\"\"{text}\"\"\"\n\n", self.class);
+        let mut text = format!("\n\nclass {}(NamedTuple):\n    {text}\"\"\"\n\n", self.class);
         for Field { name, kind, comment } in self.fields.iter().filter(|field| !UNSEEN.contains(&field.name.as_str())) {
             let kind = if *kind == "c_double" { "float" } else { "int" };
             text += &format!("    {name}: {kind}\n    \"\"\"{}\"\"\"\n", without_functions(&comment.join("\n    ")));

@@ -13,7 +13,8 @@ Whole runs need one line each; the wheel brings the program `enmm`, which they c
     enmm.fos("plane_slide.toml").factor
     enmm.run("fractured_slope.toml").plot()
 
-`enmm.ensemble` draws samples of uncertain values and finds the probability of failure.
+`enmm.ensemble` draws samples of uncertain values and finds the probability of failure; `enmm.aio` has the same
+functions for `await`.
 
 Units are SI: m, s, kg, N, Pa, rad, per metre of thickness; x to the right, y upwards, angles and moments
 counter-clockwise, stresses positive in tension.
@@ -38,6 +39,9 @@ from ._abi import (
 )
 from ._batch import Rollout, batch_step, rollout
 from ._case import Case
+from ._data import examples, schema
+from ._document import document
+from ._doors import Imported, Report, Samples, Stereonet, fmu, import_drawing, new, report, sample, stereonet
 from ._errors import (
     BufferTooSmallError,
     BusyError,
@@ -46,6 +50,8 @@ from ._errors import (
     CaseFileError,
     DeadHandleError,
     EnmmError,
+    EnmmWarning,
+    EquilibriumWarning,
     InvalidArgumentError,
     LibraryError,
     NotFoundError,
@@ -62,17 +68,21 @@ from ._model import BLOCK_DTYPE, CONTACT_DTYPE, Model, State
 from ._parameters import Parameter, Parameters
 from ._ports import Port, Ports
 from ._program import program
+from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, MemoryPart
+from ._results import Fos, Result, RunError
 from ._table import Table
-from ._tasks import Fos, Result, RunError, bound, check, fos, run
-from ._types import EquilibriumWarning, Event, Inputs, PortInputs
+from ._tasks import bound, check, fos, run
+from ._types import Event, Inputs, PortInputs
 from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
 
 __version__ = "0.1.0"
 
+document("_batch", "_doors", "_parameters", "_types", "_values")
+
 
 def __getattr__(name: str) -> Any:
-    if name == "ensemble":  # Only when it is asked for, so that the import of the package stays short.
-        return importlib.import_module("enmm.ensemble")
+    if name in ("aio", "ensemble"):  # Only when it is asked for, so that the import of the package stays short.
+        return importlib.import_module(f"enmm.{name}")
     raise AttributeError(f"module 'enmm' has no attribute {name!r}")
 
 
@@ -82,22 +92,28 @@ __all__ = [
     "BLOCK_FIELDS",
     "CONTACT_DTYPE",
     "BlockFlag",
+    "Bound",
     "BufferTooSmallError",
     "BusyError",
     "CallInterruptedError",
     "Case",
     "CaseError",
     "CaseFileError",
+    "Check",
+    "Collapse",
     "ContactState",
     "DeadHandleError",
     "Energies",
     "EnmmError",
+    "EnmmWarning",
+    "EnsembleRecord",
     "EquilibriumWarning",
     "Event",
     "EventKind",
     "Fos",
     "Frame",
     "Frames",
+    "Imported",
     "Input",
     "Inputs",
     "Interpolation",
@@ -105,6 +121,8 @@ __all__ = [
     "Library",
     "LibraryError",
     "LogLevel",
+    "MechanismBlock",
+    "MemoryPart",
     "Model",
     "MonitorState",
     "NameKind",
@@ -119,15 +137,18 @@ __all__ = [
     "PortState",
     "Ports",
     "Progress",
+    "Report",
     "Result",
     "Rollout",
     "RunError",
+    "Samples",
     "StartInfo",
     "State",
     "StateError",
     "Status",
     "StepError",
     "StepInfo",
+    "Stereonet",
     "Table",
     "TimeError",
     "Totals",
@@ -135,9 +156,17 @@ __all__ = [
     "batch_step",
     "bound",
     "check",
+    "examples",
+    "fmu",
     "fos",
+    "import_drawing",
     "load_library",
+    "new",
     "program",
+    "report",
     "rollout",
     "run",
+    "sample",
+    "schema",
+    "stereonet",
 ]

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._core import number, pointer
+from ._core import pointer
 from ._errors import invalid
 from ._model import Model, State
+from ._options import number
 from ._values import PortState
 
 
@@ -66,7 +67,7 @@ def rollout(
         parameters=ctypes.cast(pointer(indices, c_uint32), c_void_p),
         parameter_count=len(given),
         values=ctypes.cast(pointer(table, c_double), c_void_p),
-        step=model.communication_step if h is None else number(h),
+        step=model.communication_step if h is None else number("h", h),
         steps=steps,
         ports=ctypes.cast(pointer(ports, c_uint32), c_void_p),
         quantities=ctypes.cast(pointer(quantities, c_uint32), c_void_p),
@@ -90,7 +91,7 @@ def batch_step(models: Sequence[Model], h: float, *, threads: int = 1) -> npt.ND
         return statuses
     library = models[0]._core.library
     handles = (c_void_p * len(models))(*(model._core.handle for model in models))
-    result = library.attempt("enmm_batch_step", handles, len(models), number(h), threads, pointer(statuses, c_int32))
+    result = library.attempt("enmm_batch_step", handles, len(models), number("h", h), threads, pointer(statuses, c_int32))
     if not statuses.any():
         library.judge(*result)
     return statuses

@@ -7,6 +7,8 @@ from typing import Self
 class Closing:
     """What `close` ends, and the end of a `with` too."""
 
+    __slots__ = ()
+
     def close(self) -> None:
         """Ends it."""
         raise NotImplementedError

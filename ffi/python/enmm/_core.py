@@ -2,18 +2,17 @@
 
 import ctypes
 import itertools
-import operator
 import os
 import weakref
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from ctypes import POINTER, byref, c_double, c_size_t, c_void_p
-from typing import Any, SupportsFloat, SupportsIndex
+from typing import Any, NoReturn, SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _abi
+from . import _abi, _options
 from ._abi import LogLevel
 from ._errors import BufferTooSmallError, invalid
 from ._library import Library
@@ -143,7 +142,7 @@ class Core:
         self.library.call(name, self.handle, *arguments)
 
     @contextmanager
-    def watched(self, progress: ProgressFunction | None) -> Iterator[None]:
+    def watched(self, progress: ProgressFunction | None) -> Generator[None]:
         """Shows calls within it to a function; one that a function calls has its own."""
         outer, self.progress = self.progress, progress
         try:
@@ -180,8 +179,14 @@ class Core:
         self.call(name, *arguments, pointer(xy, c_double), count.value, byref(count))
         return xy
 
+    def __reduce__(self) -> NoReturn:
+        remedy = "send the model, which pickles, and take `model.ports[name]` or `model.parameters` there"
+        raise TypeError(f"ports and parameters go with their model: {remedy}")
+
     def set_log(self, function: LogFunction | None) -> None:
         """Sets where messages go."""
+        if function is not None and not callable(function):
+            raise TypeError(f"callback: is {function!r}, must be a function of level and text, or None")
         sink = None if function is None else Sink(self.library, function)
         callback, key = (_nowhere, None) if sink is None else (_deliver_from_c, sink.key)
         before, self._sink = self._sink, sink  # Now, because a message of this call may set another.
@@ -191,26 +196,28 @@ class Core:
         self.library.judge(status, message, raised)
 
 
+def unheard(level: LogLevel, message: str) -> None:
+    """The log of a model whose messages another one has given."""
+
+
 def pointer(array: npt.NDArray[Any], kind: Any) -> Any:
     """Address of the first value of a contiguous array."""
-    return array.ctypes.data_as(POINTER(kind))
-
-
-def number(value: SupportsFloat) -> float:
-    """A number of any library as one that ctypes takes."""
-    return float(value)
+    address: Any = array.ctypes
+    return address.data_as(POINTER(kind))
 
 
 def index(name: str, value: SupportsIndex) -> int:
     """A number that fits into 32 bits: ctypes would cut off the others."""
-    whole = operator.index(value)
+    whole = _options.index(name, value)
     if not 0 <= whole <= _abi.UINT32_MAX:
         raise invalid(f"{name}: is {whole}, must be at least 0 and at most {_abi.UINT32_MAX}")
     return whole
 
 
 def text(name: str, value: str | os.PathLike[str]) -> bytes:
-    """A text as C takes it."""
+    """A text or a path as C takes it."""
+    if not isinstance(value, str | os.PathLike):
+        raise TypeError(f"{name}: is {value!r}, must be a text")
     encoded = os.fspath(value).encode("utf-8", "surrogateescape")
     if b"\0" in encoded:
         raise invalid(f"{name}: has a zero character, which ends a text in C; take it out")
@@ -231,7 +238,10 @@ def ids_of(values: npt.ArrayLike) -> npt.NDArray[np.uint32]:
 
 def values_of(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[np.float64]:
     """One number for each block: one for all of them, or as many as there are."""
-    array = np.asarray(values, dtype=np.float64)
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: is {values!r}, must be a number or as many numbers as there are blocks") from None
     if array.shape not in ((), (count,)):
         raise invalid(f"{name}: has the shape {array.shape}, must be a number or have the shape ({count},)")
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))

@@ -1,5 +1,10 @@
 """What can go wrong, as exceptions: one class for each status of the C library."""
 
+import contextlib
+import os
+import sys
+import warnings
+from collections.abc import Iterable
 from enum import IntEnum
 
 
@@ -20,6 +25,27 @@ class Status(IntEnum):
     WRONG_STATE = 11
     PANIC = 12
     INTERRUPTED = 13
+
+
+class EnmmWarning(UserWarning):
+    """Something that a user should know of a case or its results; `warnings.filterwarnings` chooses what it does."""
+
+
+class EquilibriumWarning(EnmmWarning):
+    """The model was not at rest at the end of its initial equilibrium, or the slope failed in it."""
+
+
+_INNER = (os.path.dirname(__file__), contextlib.__file__)
+"""Files whose calls are none of a user's."""
+
+
+def warn(texts: Iterable[str], kind: type[EnmmWarning] = EnmmWarning) -> None:
+    """Warns of the line that called the package."""
+    depth, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_INNER):
+        depth, frame = depth + 1, frame.f_back
+    for text in texts:
+        warnings.warn(text, kind, stacklevel=depth)
 
 
 class LibraryError(OSError):
@@ -66,7 +92,7 @@ class CaseError(EnmmError, ValueError):
     """The case cannot be used; the message has file, line and key."""
 
 
-class CaseFileError(EnmmError):
+class CaseFileError(EnmmError, OSError):
     """A file cannot be read."""
 
 

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ._kinds import is_dict, is_list
+
 _ROWS = 10
 """Rows of a table that are shown."""
 
@@ -22,18 +24,23 @@ def words(value: Any) -> str:
     match value:
         case {"factor": factor, "end": end, "limit": limit}:
             return number(factor) if end == "found" else f"{str(end).replace('_', ' ')} {number(limit)}"
-        case dict():
+        case _ if is_dict(value):
             return ", ".join(f"{name} {words(inner)}" for name, inner in value.items())
-        case list() if value and all(isinstance(item, str) for item in value):
-            return "; ".join(value)
-        case list() if len(value) > 4 or any(isinstance(item, dict | list) for item in value):
-            return f"{len(value)} entries"
-        case list():
-            return ", ".join(map(words, value)) or "none"
+        case _ if is_list(value):
+            return _listed(value)
         case None:
             return "none"
         case _:
             return number(value)
+
+
+def _listed(values: list[Any]) -> str:
+    """A list of texts or of a few values; of any other its length."""
+    if values and all(isinstance(item, str) for item in values):
+        return "; ".join(values)
+    if len(values) > 4 or any(isinstance(item, dict | list) for item in values):
+        return f"{len(values)} entries"
+    return ", ".join(map(words, values)) or "none"
 
 
 def number(value: Any) -> str:

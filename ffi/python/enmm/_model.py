@@ -2,26 +2,29 @@
 
 import ctypes
 import os
-import warnings
 import weakref
-from collections.abc import Iterator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager, suppress
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
-from typing import NamedTuple, Self, SupportsIndex
+from typing import Any, NamedTuple, Self, SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _abi
-from ._abi import EventKind, Input, Interpolation, NameKind
+from . import _abi, _html, _plots
+from ._abi import EventKind, Input, Interpolation, LogLevel, NameKind
+from ._case import checked_text
 from ._closing import Closing
-from ._core import Core, LogFunction, ProgressFunction, Rows, dtype_of, ids_of, index, number, pointer, text, values_of
-from ._errors import BusyError, DeadHandleError, NotFoundError, Status, invalid
+from ._core import Core, LogFunction, ProgressFunction, Rows, dtype_of, ids_of, index, pointer, text
+from ._core import unheard, values_of
+from ._errors import BusyError, DeadHandleError, EquilibriumWarning, Status, invalid, warn
 from ._library import Library, load_library
+from ._mapping import number_of
+from ._options import number, numbers, path
 from ._parameters import Parameters
 from ._ports import Port, Ports
-from ._types import EquilibriumWarning, Event, Inputs, PortInputs
+from ._types import Event, Inputs, PortInputs
 from ._values import Energies, MonitorState, StartInfo, StepInfo, Totals
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
@@ -86,7 +89,7 @@ def _serialized(core: Core, state: State) -> bytes:
 
 
 class Source(NamedTuple):
-    """What a model was made of: the text of its case, the directory of the files that it names, its name, parameters."""
+    """What a model was made of: text of its case, directory of the files that it names, name, parameters."""
 
     toml: str
     base_dir: str
@@ -94,8 +97,9 @@ class Source(NamedTuple):
     parameters: tuple[tuple[str, float], ...] = ()
 
     def model(self) -> "Model":
-        """Builds the model once more, by the library that this process finds."""
-        model = Model.from_string(self.toml, self.base_dir)
+        """Builds the model once more, by the library that this process finds; its warnings have been given."""
+        model = Model.from_string(self.toml, self.base_dir, log=unheard)
+        model.set_log(None)
         if self.parameters:
             model.parameters.update(dict(self.parameters))
         return model
@@ -136,7 +140,24 @@ class Model(Closing):
     files that the case names must be found at the same place by the process that unpickles it.
     """
 
-    def __init__(self, core: Core, source: Source) -> None:
+    __slots__ = (
+        "__weakref__",
+        "_blocks",
+        "_case",
+        "_contacts",
+        "_core",
+        "_events",
+        "_is_started",
+        "_names",
+        "_parameters",
+        "_ports",
+        "_threads",
+        "_untold",
+    )
+
+    def __init__(self, core: Core | None = None, source: Source | None = None) -> None:
+        if not isinstance(core, Core) or source is None:
+            raise TypeError("a Model is made by `Model.from_file(path)`, `Model.from_string(toml)` or `case.model()`")
         self._core, self._case = core, source
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
         self._threads = 1
@@ -144,19 +165,25 @@ class Model(Closing):
         self._parameters = Parameters(core)
         self._is_started = False
         self._names: dict[NameKind, tuple[str, ...]] = {}
+        self._untold: list[tuple[LogLevel, str]] = []
 
     @classmethod
     def from_file(
-        cls, path: str | os.PathLike[str], *, library: Library | str | os.PathLike[str] | None = None
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        library: Library | str | os.PathLike[str] | None = None,
+        log: LogFunction | None = None,
     ) -> Self:
         """Builds the model of a case file; files that the case names are sought beside it. Nothing moves yet.
 
-        `library` is the C library or the path of it; see `load_library`. Raises CaseFileError, or CaseError with
-        file, line and key.
+        `library` is the C library or the path of it; see `load_library`. `log` gets messages, as by `set_log`; without
+        it each warning of the case is an EnmmWarning. Raises CaseFileError, or CaseError with file, line and key.
         """
-        core = Core(_library(library), "enmm_create_from_file", text("path", path))
-        toml = Path(path).read_text(encoding="utf-8")
-        return cls(core, Source(toml, str(Path(path).absolute().parent), os.fspath(path)))
+        place = _path(path)
+        core = Core(_library(library), "enmm_create_from_file", text("path", place))
+        toml = place.read_text(encoding="utf-8-sig")
+        return cls(core, Source(toml, str(place.absolute().parent), str(place)))._hearing(log)
 
     @classmethod
     def from_string(
@@ -165,15 +192,27 @@ class Model(Closing):
         base_dir: str | os.PathLike[str] | None = None,
         *,
         library: Library | str | os.PathLike[str] | None = None,
+        log: LogFunction | None = None,
     ) -> Self:
         """Builds the model of a case that is given as text in TOML, called "case" in messages.
 
         `base_dir` is the directory where files that the case names are sought, the current one without. Else as
         `from_file`.
         """
-        base = None if base_dir is None else text("base_dir", base_dir)
-        core = Core(_library(library), "enmm_create_from_string", text("toml", toml), base)
-        return cls(core, Source(toml, str(Path(base_dir or ".").absolute()), "case"))
+        place = path("base_dir", base_dir or ".")
+        base = None if base_dir is None else text("base_dir", place)
+        core = Core(_library(library), "enmm_create_from_string", text("toml", checked_text(toml)), base)
+        return cls(core, Source(toml, str(place.absolute()), "case"))._hearing(log)
+
+    def _hearing(self, log: LogFunction | None) -> Self:
+        """Lets a function get messages from the beginning; without one the warnings of the case are warned of."""
+        if log is not None:
+            self.set_log(log)
+            return self
+        self._core.set_log(lambda level, message: self._untold.append((level, message)))
+        self._core.set_log(None)
+        warn((message for level, message in self._untold if level <= LogLevel.WARNING))
+        return self
 
     def close(self) -> None:
         """Ends the model and gives its memory free. Closing again does nothing."""
@@ -219,7 +258,7 @@ class Model(Closing):
         return StartInfo(*(getattr(raw, name) for name in StartInfo._fields))
 
     @contextmanager
-    def _seeking(self) -> Iterator[None]:
+    def _seeking(self) -> Generator[None]:
         """Warns of an equilibrium that a call within it seeks and does not reach."""
         if self._is_started or self.start_info().started:
             self._is_started = True
@@ -231,9 +270,9 @@ class Model(Closing):
         if not info.settled:
             text = f"the model is not at rest at time 0 (unbalanced ratio {info.unbalanced:.2e})"
             remedy = "the slope moves, or its static stage needs a longer duration"
-            warnings.warn(f"{text}: {remedy}", EquilibriumWarning, stacklevel=4)
+            warn([f"{text}: {remedy}"], EquilibriumWarning)
         elif info.failed:
-            warnings.warn("the slope has failed in the initial equilibrium", EquilibriumWarning, stacklevel=4)
+            warn(["the slope has failed in the initial equilibrium"], EquilibriumWarning)
 
     def do_step(self, t: float, h: float, *, progress: ProgressFunction | None = None) -> StepInfo:
         """Advances the model from `t` to exactly `t + h` (s), or not at all.
@@ -251,7 +290,7 @@ class Model(Closing):
         the model then is as it was before the call.
         """
         with self._core.watched(progress), self._seeking():
-            raw = self._core.read("enmm_do_step", _abi.StepInfo, number(t), number(h))
+            raw = self._core.read("enmm_do_step", _abi.StepInfo, *numbers(t=t, h=h))
         return StepInfo(*(getattr(raw, name) for name in StepInfo._fields))
 
     def interrupt(self) -> None:
@@ -325,6 +364,10 @@ class Model(Closing):
         call, which has been done nevertheless; when the call failed too, it is the cause of that error.
         """
         self._core.set_log(callback)
+        if callback is not None:
+            told, self._untold = self._untold, []
+            for level, message in told:
+                callback(level, message)
 
     @property
     def case_hash(self) -> str:
@@ -338,7 +381,7 @@ class Model(Closing):
 
         In the initial equilibrium it grows from 0.
         """
-        self._core.call("enmm_set_gravity", number(gx), number(gy))
+        self._core.call("enmm_set_gravity", *numbers(gx=gx, gy=gy))
 
     def set_block_force(self, block: SupportsIndex, fx: float, fy: float, moment: float = 0.0) -> None:
         """Sets force (N/m) through the mass centroid of a block and moment about it (N*m/m, counter-clockwise).
@@ -346,7 +389,7 @@ class Model(Closing):
         They take the place of those that were set before, first of those of the port of the case at this block, and add
         to its loads.
         """
-        self._core.call("enmm_set_block_force", index("block", block), number(fx), number(fy), number(moment))
+        self._core.call("enmm_set_block_force", index("block", block), *numbers(fx=fx, fy=fy, moment=moment))
 
     def set_block_forces(
         self, ids: npt.ArrayLike, fx: npt.ArrayLike, fy: npt.ArrayLike, moment: npt.ArrayLike = 0.0
@@ -367,40 +410,40 @@ class Model(Closing):
         Displacements and velocities are relative to the base; all rock feels the opposite acceleration.
         It is no part of the initial equilibrium and begins at time 0.
         """
-        self._core.call("enmm_set_base_acceleration", number(ax), number(ay))
+        self._core.call("enmm_set_base_acceleration", *numbers(ax=ax, ay=ay))
 
     def set_water_level(self, y: float) -> None:
         """Sets the height of the water surface (m, in the coordinates of the case). The case must have `[water]`."""
-        self._core.call("enmm_set_water_level", number(y))
+        self._core.call("enmm_set_water_level", number("y", y))
 
     def set_boundary_traction(self, port: Port | str | SupportsIndex, tx: float, ty: float) -> None:
         """Sets traction (Pa, global axes, per length before deformation) on a boundary port.
 
         Positive pushes to the right and upwards.
         """
-        self._core.call("enmm_set_boundary_traction", self._port(port), number(tx), number(ty))
+        self._core.call("enmm_set_boundary_traction", self._port(port), *numbers(tx=tx, ty=ty))
 
     def set_boundary_pressure(self, port: Port | str | SupportsIndex, p: float) -> None:
         """Sets fluid pressure (Pa) on a boundary port; positive pushes into the rock, normal to its surface now."""
-        self._core.call("enmm_set_boundary_pressure", self._port(port), number(p))
+        self._core.call("enmm_set_boundary_pressure", self._port(port), number("p", p))
 
     def set_joint_pressure(self, port: Port | str | SupportsIndex, p: float) -> None:
         """Sets fluid pressure (Pa) in the joints of a joint port; positive pushes both faces into their rock, apart."""
-        self._core.call("enmm_set_joint_pressure", self._port(port), number(p))
+        self._core.call("enmm_set_joint_pressure", self._port(port), number("p", p))
 
     def set_port_velocity(self, port: Port | str | SupportsIndex, vx: float, vy: float) -> None:
         """Sets the velocity (m/s) of the supports of a held place, or of the wave that comes in at a quiet boundary.
 
         It acts in dynamic stages, beside what the case says.
         """
-        self._core.call("enmm_set_port_velocity", self._port(port), number(vx), number(vy))
+        self._core.call("enmm_set_port_velocity", self._port(port), *numbers(vx=vx, vy=vy))
 
     def set_port_displacement(self, port: Port | str | SupportsIndex, ux: float, uy: float) -> None:
         """Sets the displacement (m) that the supports of a held place have reached at the end of the next step.
 
         It counts from their place before a host has moved them. They go there at a steady velocity, and stay.
         """
-        self._core.call("enmm_set_port_displacement", self._port(port), number(ux), number(uy))
+        self._core.call("enmm_set_port_displacement", self._port(port), *numbers(ux=ux, uy=uy))
 
     def jump(self) -> None:
         """Makes all inputs that have been set since the last step act at once from the start of the next one.
@@ -435,7 +478,7 @@ class Model(Closing):
 
         1 is the strength of the case.
         """
-        self._core.call("enmm_set_strength_factor", number(f))
+        self._core.call("enmm_set_strength_factor", number("f", f))
 
     @property
     def parameters(self) -> Parameters:
@@ -517,12 +560,7 @@ class Model(Closing):
         return MonitorState(*(getattr(raw, name) for name in MonitorState._fields))
 
     def _named(self, kind: NameKind, name: str) -> int:
-        names = self.names(kind)
-        if name not in names:
-            word = kind.name.lower()
-            known = ", ".join(names) or "none"
-            raise NotFoundError(f"no {word} is named {name!r}; {word}s of the case: {known}", Status.NOT_FOUND)
-        return names.index(name)
+        return number_of(kind.name.lower(), name, {name: k for k, name in enumerate(self.names(kind))})
 
     def energies(self) -> Energies:
         """Energies now and works since the start."""
@@ -548,9 +586,21 @@ class Model(Closing):
         count = self._core.get("enmm_block_hole_count", c_size_t, of)
         return [self._core.points("enmm_get_block_hole", of, hole) for hole in range(count)]
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the blocks where they are now by matplotlib, in the colour of their displacement; returns the axes."""
+        return _plots.model(self, ax)
+
+    def _repr_html_(self) -> str:
+        if not self.is_alive:
+            return _html.facts([("model", repr(self))])
+        rows = [("case", self._source.name), ("time", f"{self.time:g} s"), ("blocks", str(self.block_count))]
+        rows += [("port", f"{name}: {port.kind.name.lower()}") for name, port in self.ports.items()]
+        moved = f"{self.totals().displacement_max:.4g} m"
+        return _html.facts([*rows, ("largest displacement", moved)])
+
     def find_block_at(self, x: float, y: float) -> int:
         """Block at a place (m) now, the lowest id where blocks meet. Raises NotFoundError where no rock is."""
-        return int(self._core.get("enmm_find_block_at", c_uint32, number(x), number(y)))
+        return int(self._core.get("enmm_find_block_at", c_uint32, *numbers(x=x, y=y)))
 
     # Results.
 
@@ -566,8 +616,9 @@ class Model(Closing):
         an input of the case; InvalidArgumentError when the model is recorded already. When a file cannot be written
         later, steps go on, the log gets the error and `end_record` raises it.
         """
-        self._core.call("enmm_record", text("folder", folder))
-        return Recording(self, Path(folder))
+        place = path("folder", folder)
+        self._core.call("enmm_record", text("folder", place))
+        return Recording(self, place)
 
     def write_frame(self) -> None:
         """Writes a row of the history, a frame of the film and frames for ParaView of this instant at once.
@@ -601,6 +652,7 @@ class Model(Closing):
         that differs in values of parameters, and this model keeps its own. Raises StateError for a state of another
         case; the model then stays as it is.
         """
+        _check_state(state)
         self._core.call("enmm_state_restore_with", state.handle, _abi.KEEP_PARAMETERS if keep_parameters else 0)
         self._is_started = False
 
@@ -612,6 +664,7 @@ class Model(Closing):
         if state is None:
             with self.save() as now:
                 return self.serialize(now)
+        _check_state(state)
         return _serialized(self._core, state)
 
     def deserialize(self, data: bytes | bytearray | memoryview, *, keep_parameters: bool = False) -> State:
@@ -620,8 +673,12 @@ class Model(Closing):
         With `keep_parameters` the bytes may be of a model that differs in values of parameters; the state then has
         those of this model. Raises StateError for bytes that are damaged, or of another case or version.
         """
-        # A view refuses what is no buffer, of which `bytes` would make zeros or a copy.
-        whole = bytes(memoryview(data))
+        try:
+            # A view refuses what is no buffer, of which `bytes` would make zeros or a copy.
+            whole = bytes(memoryview(data))
+        except TypeError:
+            kind = type(data).__name__
+            raise TypeError(f"data: is of type {kind}, must be the bytes that `serialize` gave") from None
         flags = _abi.KEEP_PARAMETERS if keep_parameters else 0
         return self._state("enmm_state_deserialize_with", whole, len(whole), flags)
 
@@ -631,7 +688,10 @@ class Model(Closing):
         return State(self._core.library, handle, self._source, self._core)
 
     def _rows(self, rows: Rows, name: str, copy: bool, *arguments: object) -> npt.NDArray[np.void]:
-        view = rows.fill(lambda *buffer: self._core.call(name, *arguments, *buffer))
+        def fetch(*buffer: object) -> None:
+            self._core.call(name, *arguments, *buffer)
+
+        view = rows.fill(fetch)
         return view.copy() if copy else view
 
     def _port(self, port: Port | str | SupportsIndex) -> int:
@@ -642,6 +702,18 @@ class Model(Closing):
         if not port.belongs_to(self._core):
             raise invalid(f"port: {port.name!r} is one of another model; use that of this one")
         return port.index
+
+
+def _check_state(state: State) -> None:
+    if not isinstance(state, State):
+        kind = type(state).__name__
+        raise TypeError(f"state: is of type {kind}, must be a State of `save`, or of `deserialize` for bytes")
+
+
+def _path(given: str | os.PathLike[str]) -> Path:
+    if isinstance(given, Mapping) or hasattr(given, "model"):
+        raise TypeError("path: is a case, must be the path of a case file; use `Case.of(case).model()`")
+    return path("path", given)
 
 
 def _library(given: Library | str | os.PathLike[str] | None) -> Library:

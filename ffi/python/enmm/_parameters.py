@@ -1,12 +1,14 @@
 """Parameters of the case by name: strengths of joints, rock, damping, water, bolts."""
 
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Mapping, MutableMapping
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32
 from typing import NamedTuple, SupportsFloat
 
 import numpy as np
 
-from ._core import Core, number, pointer, text
+from ._core import Core, pointer
+from ._mapping import Named
+from ._options import number
 
 
 class Parameter(NamedTuple):
@@ -26,7 +28,7 @@ class Parameter(NamedTuple):
     """Whether it may change at any time; others only before the start."""
 
 
-class Parameters(MutableMapping[str, float]):
+class Parameters(Named[float], MutableMapping[str, float]):
     """Parameters of a model and their values now, by name.
 
     `model.parameters["joint_law.weak.friction"] = math.radians(24)` sets one, `update` several at once: all, or none
@@ -35,12 +37,13 @@ class Parameters(MutableMapping[str, float]):
     unknown name is a NotFoundError, which is a KeyError.
     """
 
+    _noun = "parameter"
+
     def __init__(self, core: Core) -> None:
-        self._core = core
+        names = [core.text("enmm_parameter_name", k) for k in range(core.get("enmm_parameter_count", c_size_t))]
+        super().__init__(core, names)
         self.built: dict[str, float] = {}
         """Those with which the model was built anew."""
-        count = core.get("enmm_parameter_count", c_size_t)
-        self._by_name = {core.text("enmm_parameter_name", k): k for k in range(count)}
 
     def info(self, name: str) -> Parameter:
         """Unit, meaning and range of a parameter."""
@@ -55,33 +58,14 @@ class Parameters(MutableMapping[str, float]):
         return float(self._core.get("enmm_get_parameter", c_double, self.index(name)))
 
     def __setitem__(self, name: str, value: SupportsFloat) -> None:
-        self._set({name: number(value)})
+        self._set({name: number(name, value)})
 
     def __delitem__(self, name: str) -> None:
         raise TypeError("parameters cannot be removed; set another value")
 
     def update(self, *values: Mapping[str, float], **named: float) -> None:  # type: ignore[override]
         """Sets several parameters at once: all, or none when one is refused."""
-        self._set({name: number(value) for name, value in dict(*values, **named).items()})
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._by_name)
-
-    def __len__(self) -> int:
-        return len(self._by_name)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._by_name
-
-    def __repr__(self) -> str:
-        return f"<enmm.Parameters {dict(self)}>"
-
-    def index(self, name: str) -> int:
-        """Number of a parameter."""
-        if name not in self._by_name:
-            # Only to fail: the library tells the names that there are.
-            self._core.get("enmm_find_parameter", c_uint32, text("name", name))
-        return self._by_name[name]
+        self._set({name: number(name, value) for name, value in dict(*values, **named).items()})
 
     def _set(self, values: Mapping[str, float]) -> None:
         indices = np.array([self.index(name) for name in values], dtype=np.uint32)

@@ -6,29 +6,42 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._abi import BlockFlag
 from ._frames import Frame, Frames
 from ._table import Table
 
 if TYPE_CHECKING:
-    from ._tasks import Fos
+    from ._model import Model
+    from ._results import Fos
 
-UNITS = {"displacement": "m", "velocity": "m/s", "stress_xx": "Pa", "stress_yy": "Pa", "stress_xy": "Pa"}
-UNITS |= {"mean_stress": "Pa", "max_shear": "Pa"}
+UNITS = {"displacement": "m", "velocity": "m/s"} | dict.fromkeys(
+    ("stress_xx", "stress_yy", "stress_xy", "mean_stress", "max_shear", "principal_max", "principal_min"), "Pa"
+)
 
 
 def axes(ax: Any, size: tuple[float, float] = (8, 5)) -> Any:
     """The given axes, or new ones."""
     if ax is not None:
         return ax
-    import matplotlib.pyplot as plt
-
-    return plt.figure(figsize=size, layout="constrained").subplots()
+    return new_figure(size).subplots()
 
 
-def frame(of: Frame, field: str, ax: Any) -> Any:
-    """Draws the elements of a frame."""
+def new_figure(size: tuple[float, float]) -> Any:
+    """A figure of matplotlib (inches)."""
+    import matplotlib.pyplot
+
+    plt: Any = matplotlib.pyplot
+    return plt.figure(figsize=size, layout="constrained")
+
+
+def frame(of: Frame, field: str, ax: Any, scale: float = 1.0, joints: bool = True) -> Any:
+    """Draws the elements of a frame, and the joints where nothing is scaled."""
+    from matplotlib.collections import LineCollection
+
     ax = axes(ax)
-    collection = _elements(ax, of, field)
+    collection = _elements(ax, of, field, scale)
+    if joints and scale == 1.0:
+        ax.add_collection(LineCollection(list(of.joints()), colors="black", linewidths=0.6))
     ax.autoscale_view()
     unit = UNITS.get(field)
     ax.figure.colorbar(collection, ax=ax, label=f"{field} ({unit})" if unit else field)
@@ -36,11 +49,29 @@ def frame(of: Frame, field: str, ax: Any) -> Any:
     return ax
 
 
-def _elements(ax: Any, of: Frame, field: str) -> Any:
+def model(of: "Model", ax: Any) -> Any:
+    """Draws the blocks of a model."""
+    from matplotlib.collections import PolyCollection
+
+    ax = axes(ax)
+    blocks = of.blocks()
+    there = blocks[blocks["flags"] & BlockFlag.REMOVED == 0]
+    moved = np.hypot(there["displacement_x"], there["displacement_y"])
+    outlines = [of.polygon(block) for block in there["id"].tolist()]
+    collection = PolyCollection(outlines, array=moved, edgecolors="black", linewidths=0.6)
+    ax.add_collection(collection)
+    ax.set(aspect="equal", xlabel="x (m)", ylabel="y (m)", title=f"t = {of.time:.4g} s")
+    ax.autoscale_view()
+    ax.figure.colorbar(collection, ax=ax, label="displacement (m)")
+    return ax
+
+
+def _elements(ax: Any, of: Frame, field: str, scale: float = 1.0) -> Any:
     from matplotlib.collections import PolyCollection
 
     values = of.of_elements(field)
-    collection = PolyCollection(of.polygons(), array=values, edgecolors="face", linewidths=0.2)
+    points = of.points + (scale - 1.0) * of.point_data["displacement"]
+    collection = PolyCollection(np.split(points, of.ends[:-1]), array=values, edgecolors="face", linewidths=0.2)
     ax.add_collection(collection)
     ax.set(aspect="equal", xlabel="x (m)", ylabel="y (m)")
     return collection

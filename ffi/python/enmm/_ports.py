@@ -1,12 +1,13 @@
 """Places that a case names by `[[port]]`, where a host reads and acts."""
 
-from collections.abc import Iterator, Mapping
 from ctypes import c_int32, c_size_t, c_uint32
 
 from . import _abi
 from ._abi import Input, Interpolation, PortKind
-from ._core import Core, number, text
+from ._core import Core
 from ._errors import invalid
+from ._mapping import Named
+from ._options import number, numbers
 from ._values import PortState
 
 
@@ -45,22 +46,22 @@ class Port:
         if self.kind is not PortKind.BLOCK:
             kind = self.kind.name.lower()
             raise invalid(f"port: {self.name!r} is of kind {kind}, must be of a block; use its own input")
-        self._core.call("enmm_set_block_force", self.block, number(fx), number(fy), number(moment))
+        self._core.call("enmm_set_block_force", self.block, *numbers(fx=fx, fy=fy, moment=moment))
 
     def set_traction(self, tx: float, ty: float) -> None:
         """Sets traction (Pa) on a boundary port, as `Model.set_boundary_traction`."""
-        self._core.call("enmm_set_boundary_traction", self.index, number(tx), number(ty))
+        self._core.call("enmm_set_boundary_traction", self.index, *numbers(tx=tx, ty=ty))
 
     def set_velocity(self, vx: float, vy: float) -> None:
         """Sets the velocity (m/s) of a moved support, or of the wave that comes in through a quiet boundary.
 
         As `Model.set_port_velocity`.
         """
-        self._core.call("enmm_set_port_velocity", self.index, number(vx), number(vy))
+        self._core.call("enmm_set_port_velocity", self.index, *numbers(vx=vx, vy=vy))
 
     def set_displacement(self, ux: float, uy: float) -> None:
         """Sets the displacement (m) of a moved support, as `Model.set_port_displacement`."""
-        self._core.call("enmm_set_port_displacement", self.index, number(ux), number(uy))
+        self._core.call("enmm_set_port_displacement", self.index, *numbers(ux=ux, uy=uy))
 
     def set_interpolation(self, mode: Interpolation) -> None:
         """Sets how the inputs of this port go through a communication step, from the next one on."""
@@ -72,31 +73,17 @@ class Port:
         As `Model.set_boundary_pressure` and `Model.set_joint_pressure`.
         """
         of = "joint" if self.kind is PortKind.JOINT else "boundary"
-        self._core.call(f"enmm_set_{of}_pressure", self.index, number(p))
+        self._core.call(f"enmm_set_{of}_pressure", self.index, number("p", p))
 
 
-class Ports(Mapping[str, Port]):
+class Ports(Named[Port]):
     """Ports of a model by name, in the order of the case. An unknown name is a NotFoundError, which is a KeyError."""
 
+    _noun = "port"
+
     def __init__(self, core: Core) -> None:
-        self._core = core
-        ports = (Port(core, index) for index in range(core.get("enmm_port_count", c_size_t)))
-        self._by_name = {port.name: port for port in ports}
+        self._ports = [Port(core, index) for index in range(core.get("enmm_port_count", c_size_t))]
+        super().__init__(core, [port.name for port in self._ports])
 
     def __getitem__(self, name: str) -> Port:
-        if name not in self._by_name:
-            # Only to fail: the library tells the names that there are.
-            self._core.get("enmm_find_port", c_uint32, text("name", name))
-        return self._by_name[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._by_name)
-
-    def __len__(self) -> int:
-        return len(self._by_name)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._by_name
-
-    def __repr__(self) -> str:
-        return f"<enmm.Ports {list(self._by_name.values())}>"
+        return self._ports[self.index(name)]

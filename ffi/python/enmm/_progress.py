@@ -43,12 +43,13 @@ class Bar:
             print(f"\r{text:<{self._width}}", end="", file=sys.stderr, flush=True)
 
     def _show(self, page: str) -> None:
-        from IPython.display import HTML, display
+        from IPython import display
 
+        shown: Any = display
         if self._handle is None:
-            self._handle = display(HTML(page), display_id=True)
+            self._handle = shown.display(shown.HTML(page), display_id=True)
         else:
-            self._handle.update(HTML(page))
+            self._handle.update(shown.HTML(page))
 
     def __enter__(self) -> Self:
         return self

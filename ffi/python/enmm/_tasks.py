@@ -1,289 +1,23 @@
 """What the program does with a case, as functions: `run`, `fos`, `bound` and `check`."""
 
-import html
 import json
 import os
-import tempfile
-import weakref
-import webbrowser
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any, Self
+from collections.abc import Callable, Sequence
+from typing import Any, cast
 
-from . import _html, _plots
-from ._closing import Closing
-from ._errors import EnmmError, Status, invalid
-from ._frames import Frames
+from . import _places
+from ._errors import Status, warn
+from ._html import Record
+from ._options import real, whole, words
+from ._options import path as path_of
 from ._program import FAILED, INTERRUPTED, SLOPE_FAILED, CaseLike, call, case_file, failure, message_of, record
 from ._progress import Bar, in_notebook
-from ._table import Table
+from ._records import Bound, Check
+from ._results import Fos, Result, RunError
 
-
-class RunError(EnmmError):
-    """A run that ended early, or whose end is in doubt. `result` has all that it wrote, with a checkpoint."""
-
-    result: "Result"
-
-    def __init__(self, message: str, status: int, result: "Result") -> None:
-        super().__init__(message, status)
-        self.result = result
-
-
-class _Directory(Closing):
-    """A directory with results; a temporary one is removed by `close`, at the end of a `with`, or with the object."""
-
-    directory: Path
-    """Where the files are."""
-
-    def __init__(self, directory: str | os.PathLike[str] | None) -> None:
-        if directory is None:
-            temporary = tempfile.TemporaryDirectory(prefix="enmm-", ignore_cleanup_errors=True)
-            self.directory, self._close = Path(temporary.name), weakref.finalize(self, temporary.cleanup)
-        else:
-            self.directory, self._close = Path(directory), weakref.finalize(self, lambda: None)
-
-    @property
-    def pictures(self) -> list[Path]:
-        """The pictures that the program drew."""
-        return sorted(self.directory.glob("*.png"))
-
-    @property
-    def report(self) -> Path | None:
-        """`report.html`, which opens in a browser; None when this version of the program writes none."""
-        path = self.directory / "report.html"
-        return path if path.is_file() else None
-
-    def show(self, height: int = 640) -> None:
-        """Shows the page of results: in a frame of a notebook, else in a browser. `height` is that of the frame (px)."""
-        if self.report is None:
-            raise invalid(f"{self.directory}: holds no report.html to show; let `fos` draw its pictures")
-        if in_notebook():
-            from IPython.display import HTML, display
-
-            display(HTML(_html.frame(self.report, height)))
-        else:
-            webbrowser.open(self.report.absolute().as_uri())
-
-    def close(self) -> None:
-        """Removes the directory if it is a temporary one. What has been read stays."""
-        self._close()
-
-
-class Result(_Directory):
-    """Results of `run`, or of any directory that `enmm run` wrote: `Result("fractured_slope")`."""
-
-    summary: dict[str, Any]
-    """`summary.json`: counts, stages, steps, energies, penetration, wall times, version, hash of the case."""
-    history: Table
-    """`history.csv`: time, monitored quantities and energies."""
-    blocks: Table
-    """`blocks.csv`: the blocks at the end."""
-    frames: Frames
-    """Elements at every time that the case asks for; empty with `output.frames = false`."""
-
-    def __init__(self, directory: str | os.PathLike[str] | None) -> None:
-        super().__init__(directory)
-        if directory is not None:
-            self._read()
-
-    def _read(self) -> Self:
-        self.summary = json.loads((self.directory / "summary.json").read_text(encoding="utf-8"))
-        self.history = Table.read_csv(self.directory / "history.csv")
-        self.blocks = Table.read_csv(self.directory / "blocks.csv")
-        self.frames = Frames(self.directory / "run.pvd")
-        return self
-
-    @property
-    def failed(self) -> bool:
-        """Whether the slope has failed in any stage."""
-        return bool(self.summary["failed"])
-
-    @property
-    def verdict(self) -> str:
-        """Whether the slope has failed, and how, in one line: stage, mechanism, blocks, largest displacement, place."""
-        return str(self.summary["verdict"])
-
-    @property
-    def checkpoint(self) -> Path:
-        """The state at the end, from which `run(case, resume=...)` continues."""
-        return self.directory / "checkpoint.enmm"
-
-    def plot(self, field: str = "displacement", frame: int = -1, ax: Any = None) -> Any:
-        """Draws the elements of a frame, coloured by a field, by matplotlib; returns the axes.
-
-        `field` is one of `Frame.cell_data` or `Frame.point_data`; of a vector its length.
-        """
-        return _plots.frame(self.frames[frame], field, ax)
-
-    def plot_history(self, *names: str, ax: Any = None) -> Any:
-        """Draws columns of the history over time, without names all displacements; returns the axes of matplotlib."""
-        return _plots.history(self.history, names, ax)
-
-    def animate(self, path: str | os.PathLike[str] | None = None, field: str = "displacement", fps: int = 10) -> Any:
-        """Animates the frames, coloured by a field; writes `path` (.gif, or .mp4 where ffmpeg is there) when given.
-
-        Returns the animation of matplotlib; in a notebook show its `to_jshtml()`.
-        """
-        return _plots.animation(self.frames, field, fps, path)
-
-    def _repr_html_(self) -> str:
-        if not hasattr(self, "summary"):
-            return f"<p>{html.escape(repr(self))}</p>"
-        ends = {True: "at rest", False: "not at rest", None: ""}
-        stages = [
-            (
-                f"stage {stage['name']}",
-                f"{stage['time']:.4g} s, {stage['steps']} steps {ends[stage['converged']]}".strip(),
-            )
-            for stage in self.summary["stages"]
-        ]
-        verdict = [("verdict", self.verdict)] if "verdict" in self.summary else []
-        rows = [*verdict, ("status", self.summary["status"]), ("blocks", str(self.blocks.rows)), *stages]
-        rows += [("warning", text) for text in self.summary.get("warnings", [])]
-        return _html.facts(rows) + _html.picture(self.directory / "deformed.png", "The slope at the end of the run")
-
-    def __repr__(self) -> str:
-        if not hasattr(self, "summary"):
-            return f"<enmm.Result {str(self.directory)!r}, not written yet>"
-        what = f"{self.summary['status']}, t = {self.summary['time']:g} s, {self.blocks.rows} blocks"
-        return f"<enmm.Result {str(self.directory)!r}: {what}, {len(self.frames)} frames>"
-
-
-def _number(value: Any) -> float | None:
-    return None if value is None else float(value)
-
-
-class Fos(_Directory):
-    """A factor of safety: what `fos` found, or any directory that `enmm fos` wrote: `Fos("plane_slide/fos")`."""
-
-    record: dict[str, Any]
-    """`fos.json`."""
-
-    def __init__(self, directory: str | os.PathLike[str] | None) -> None:
-        super().__init__(directory)
-        if directory is not None:
-            self.record = json.loads((self.directory / "fos.json").read_text(encoding="utf-8"))
-
-    @property
-    def factor_corners_hold(self) -> float | None:
-        """The factor where the corners of `corner_contacts` hold; None where none carry the slope."""
-        return _number(self.record.get("factor_corners_hold"))
-
-    @property
-    def factor_lost(self) -> float | None:
-        """The greatest factor at which the slope rests in its real geometry; None where it was not found."""
-        return _number(self.record.get("factor_lost"))
-
-    @property
-    def corner_contacts(self) -> list[dict[str, Any]]:
-        """Corners that carry the slope: `block`, `ahead`, `x` and `y` (m), `length` (m), `force` (N/m)."""
-        return list(self.record.get("corner_contacts", []))
-
-    @property
-    def factor(self) -> float | None:
-        """The factor of safety; None when the search ended without one, see `status`, or `at_most` holds."""
-        factor = self.record["factor_of_safety"]
-        return None if factor is None else float(factor)
-
-    @property
-    def status(self) -> str:
-        """`found`, `stable_throughout` (then `at_least` holds), `unstable_throughout` or `failed`."""
-        return str(self.record["status"])
-
-    @property
-    def at_least(self) -> float | None:
-        """The greatest factor at which the slope is stable, when it is at all that were tried."""
-        least = self.record["at_least"]
-        return None if least is None else float(least)
-
-    @property
-    def at_most(self) -> float | None:
-        """The upper bound of limit analysis, when a trial above it was stable: the factor is at most that."""
-        most = self.record.get("at_most")
-        return None if most is None else float(most)
-
-    @property
-    def bracket(self) -> tuple[float | None, float | None]:
-        """Greatest factor that is stable and least that is not."""
-        return self.record["bracket"]["stable"], self.record["bracket"]["unstable"]
-
-    @property
-    def trials(self) -> Table:
-        """The trials, in the order of the factor."""
-        return Table.of_rows(self.record["trials"])
-
-    @property
-    def failing(self) -> dict[str, Any] | None:
-        """Blocks, area (m2), mass (kg/m) and share of the free rock that fail; None when nothing does."""
-        found: dict[str, Any] | None = self.record["failing"]
-        return found
-
-    @property
-    def failing_blocks(self) -> Table:
-        """The blocks that fail: id, x, y (m), area (m2), mass (kg/m), displacement (m), rotation, speed (m/s)."""
-        rows = [{**row, "x": row["place"][0], "y": row["place"][1]} for row in self.record["failing_blocks"]]
-        return Table.of_rows([{name: value for name, value in row.items() if name != "place"} for row in rows])
-
-    @property
-    def mechanisms(self) -> list[dict[str, Any]]:
-        """One record for each mechanism that was sought; those that are too small do not count."""
-        return list(self.record["mechanisms"])
-
-    @property
-    def bound(self) -> dict[str, Any]:
-        """Limit analysis of the same slope, as `bound` returns it, or `{"refused": why}`."""
-        return dict(self.record["bound"])
-
-    @property
-    def warnings(self) -> list[str]:
-        """What the user should know of the case and the search."""
-        return list(self.record["warnings"])
-
-    @property
-    def doubt(self) -> str | None:
-        """Why the factor is in doubt: it is above the bound of limit analysis. None when it is not."""
-        doubt: str | None = self.record.get("doubt")
-        return doubt
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draws displacement over the factor of every trial by matplotlib; returns the axes."""
-        return _plots.trials(self, ax)
-
-    def _repr_html_(self) -> str:
-        low, high = self.bracket
-        named = [("stable at", low), ("not stable at", high), ("at least", self.at_least), ("at most", self.at_most)]
-        rows = [("factor of safety", "none" if self.factor is None else f"{self.factor:.4f}"), ("status", self.status)]
-        rows += [(name, f"{value:.4f}") for name, value in named if value is not None]
-        rows += [("limit analysis", _of_bound(self.bound))]
-        if self.failing:
-            rows += [
-                ("failing area", f"{self.failing['area']:.3g} m², {100 * self.failing['share']:.3g} % of the free rock")
-            ]
-        rows += [("warning", text) for text in self.warnings]
-        return _html.facts(rows) + _html.picture(self.directory / "failure.png", "The rock that fails")
-
-    def __float__(self) -> float:
-        if self.factor is None:
-            if self.at_most is not None:
-                raise ValueError(f"the factor is at most {self.at_most:.4f}, an upper bound: {self.doubt}")
-            raise ValueError(f"the search ended {self.status}: there is no factor; {self.record['remedy']}")
-        return self.factor
-
-    def __repr__(self) -> str:
-        if self.at_most is not None:
-            return f"<enmm.Fos: at most {self.at_most:.4f}>"
-        if self.factor is None:
-            return f"<enmm.Fos: {self.status}{'' if self.at_least is None else f', at least {self.at_least:.4f}'}>"
-        low, high = self.bracket
-        return f"<enmm.Fos {self.factor:.4f}: stable at {low:.4f}, not at {high:.4f}>"
-
-
-def _of_bound(bound: dict[str, Any]) -> str:
-    """The factor of limit analysis, or the reason why there is none."""
-    if "refused" in bound:
-        return f"none: {bound['refused']}"
-    named = {"level_tops": "upper bound", "lower": "lower bound", "upper": "upper bound", "estimate": "estimate"}
-    return ", ".join(f"{word} {_html.words(bound[name])}" for name, word in named.items() if bound.get(name))
+THREADS_MAX = 1024
+FACTORS = (0.05, 20.0)
+"""Least and greatest factor of safety that a search tries."""
 
 
 def run(
@@ -292,38 +26,57 @@ def run(
     *,
     threads: int | None = None,
     resume: str | os.PathLike[str] | None = None,
-    progress: bool | None = None,
+    pictures: bool = True,
+    overwrite: bool = False,
+    timeout: float | None = None,
+    progress: bool | Callable[[str], object] | None = None,
 ) -> Result:
     """Runs all stages of a case and returns what `enmm run` writes.
 
-    `output` is the directory of the results; without it they go to a temporary one, which `Result.close` removes.
-    `threads` is how many are used, all without it; results do not depend on it. `resume` is a checkpoint to continue
-    from. `progress` shows how far the run is: by default in notebooks alone.
+    `output` is the directory of the results; without it they go to a temporary one, which `Result.close` removes. One
+    with results of another case is refused without `overwrite`. `threads` is how many are used, all without it;
+    results do not depend on it. `resume` is a checkpoint to continue from. Without `pictures` none are drawn, which
+    takes most of the time of a small run. `progress` shows how far the run is: by default in notebooks alone; a
+    function is called with a line for each instead. A run that has not ended after `timeout` (s) is ended with a
+    TimeoutError; it leaves a checkpoint in `output`.
 
-    Raises CaseError with file, line and key; RunError, with the results so far, when a run fails numerically or does
-    not come to a sound end. A slope that fails raises nothing: see `Result.failed` and `Result.verdict`.
+    Each warning of the results is an EnmmWarning. Raises CaseError with file, line and key; RunError, with the results
+    so far, when a run fails numerically or does not come to a sound end. A slope that fails raises nothing: see
+    `Result.failed` and `Result.verdict`.
     """
+    options: dict[str, Any] = {"threads": whole("threads", threads, 1, THREADS_MAX)}
+    options |= {"resume": None if resume is None else path_of("resume", resume)}
+    options |= {"no-pictures": not pictures, "force": overwrite}
     result = Result(None) if output is None else None
-    directory = result.directory if result else Path(output or "")
-    words: list[object] = ["-o", directory]
-    words += [] if threads is None else ["--threads", threads]
-    words += [] if resume is None else ["--resume", resume]
-    show = bool(progress) and not in_notebook()
-    with case_file(case) as path, Bar(None if progress is None else progress and in_notebook()) as bar:
+    directory = result.directory if result else path_of("output", output or "")
+    say = progress if callable(progress) else None
+    shown = None if progress is None else bool(progress)
+    show = bool(shown) and say is None and not in_notebook()
+    with case_file(case) as path, Bar(False if say else None if shown is None else shown and in_notebook()) as bar:
 
         def hear(line: str) -> bool:
-            bar.say(line, at_once=True)
-            return "  simulated " in line or line.startswith("building the model")
+            is_used = "  simulated " in line or line.startswith("building the model")
+            if say is None:
+                bar.say(line, at_once=True)
+            elif is_used:
+                say(line.strip())
+            return is_used
 
-        words += [] if show or bar.shown else ["--quiet"]
-        status, _, error = call(["run", path, "--force", *words], show=show, hear=hear if bar.shown else None)
+        listens = bar.shown or say is not None
+        quiet = not show and not listens
+        line = ["run", path, "-o", directory, *words(options | {"quiet": quiet})]
+        status, _, error = call(line, show=show, hear=hear if listens else None, timeout=timeout)
     if status in (0, SLOPE_FAILED):
-        return result._read() if result else Result(directory)
+        found = result._read() if result else Result(directory)
+        warn(found.warnings)
+        return found
     message = message_of(status, error) if error or not show else "the run failed; see the message above"
     if status not in (FAILED, INTERRUPTED) or not (directory / "summary.json").is_file():
         raise failure(status, message)
     if status == INTERRUPTED:
         raise KeyboardInterrupt(message)
+    if result:  # Its directory may be another one where the exception arrives.
+        message = message.replace(str(result.checkpoint), "the `result.checkpoint` of this exception")
     raise RunError(message, Status.NUMERICAL_FAILURE, result._read() if result else Result(directory))
 
 
@@ -339,6 +92,8 @@ def fos(
     mechanisms: int | None = None,
     threads: int | None = None,
     pictures: bool = True,
+    overwrite: bool = False,
+    timeout: float | None = None,
     progress: bool | Callable[[str], object] | None = None,
 ) -> Fos:
     """Finds the factor of safety of a case by strength reduction, as `enmm fos` does.
@@ -348,17 +103,50 @@ def fos(
     of the free rock without it) do not count. `stage` is the static stage after which the slope is looked at.
     `mechanisms` is how many are sought, each without the blocks of those before. Without `pictures` neither pictures
     nor a page are drawn. `progress` shows the trials, by default in notebooks alone; a function is called with a line
-    for each instead. A search that ends without a factor is no error: see `Fos.status`. `output` and `threads` are
-    as those of `run`.
+    for each instead. A search that ends without a factor is no error: see `Fos.status`. `output`, `threads`,
+    `overwrite` and `timeout` are as those of `run`.
 
-    Raises CaseError with file, line and key; StepError when the slope does not come to rest before the search.
+    Each warning, and the doubt in a factor, is an EnmmWarning. Raises CaseError with file, line and key; StepError when
+    the slope does not come to rest before the search.
     """
+    options = search_options(low, high, tolerance, least_area, stage, mechanisms, threads)
+    found = search(case, output, options | {"no-pictures": not pictures, "force": overwrite}, timeout, progress)
+    warn([*found.warnings, *([found.doubt] if found.doubt else [])])
+    return found
+
+
+def search_options(
+    low: float | None = None,
+    high: float | None = None,
+    tolerance: float | None = None,
+    least_area: float | None = None,
+    stage: str | None = None,
+    mechanisms: int | None = None,
+    threads: int | None = None,
+) -> dict[str, Any]:
+    """The options of a search that are given. Raises InvalidArgumentError for a value that no search takes."""
+    options = {
+        "low": real("low", low, *FACTORS),
+        "high": real("high", high, *FACTORS),
+        "tolerance": real("tolerance", tolerance, 1e-4, 0.5),
+        "least_area": real("least_area", least_area, 0.0, 1e12),
+        "stage": None if stage is None else str(stage),
+        "mechanisms": whole("mechanisms", mechanisms, 1, 100),
+        "threads": whole("threads", threads, 1, THREADS_MAX),
+    }
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def search(
+    case: CaseLike,
+    output: str | os.PathLike[str] | None,
+    options: dict[str, Any],
+    timeout: float | None = None,
+    progress: bool | Callable[[str], object] | None = None,
+) -> Fos:
+    """Finds a factor of safety by options that have been checked, without a word of its warnings."""
     found = Fos(None) if output is None else None
-    directory = found.directory if found else Path(output or "")
-    options = {"low": low, "high": high, "tolerance": tolerance, "least-area": least_area, "stage": stage}
-    options |= {"mechanisms": mechanisms, "threads": threads}
-    words = [word for name, value in options.items() if value is not None for word in (f"--{name}", value)]
-    words += [] if pictures else ["--no-pictures"]
+    directory = found.directory if found else path_of("output", output or "")
     with case_file(case) as path, Bar(False if callable(progress) else progress) as bar:
         bar.say("the slope comes to rest before the first trial")
 
@@ -371,8 +159,8 @@ def fos(
             return trial is not None
 
         listens = bar.shown or callable(progress)
-        words += ["--trials"] if listens else []
-        written = record(["fos", path, "--force", "-o", directory, *words], hear if listens else None)
+        line = ["fos", path, "-o", directory, *words(options | {"trials": listens})]
+        written = record(line, hear if listens else None, timeout)
     if found is None:
         return Fos(directory)
     found.record = written
@@ -383,28 +171,56 @@ def _trial(line: str) -> dict[str, Any] | None:
     """A trial that the program prints in one line before its result, which has several."""
     if not line.startswith('{"'):
         return None
-    found = json.loads(line)
+    found: dict[str, Any] = json.loads(line)
     return found if "done" in found and "trial" in found else None
 
 
-def bound(case: CaseLike, output: str | os.PathLike[str] | None = None, *, stage: str | None = None) -> dict[str, Any]:
+def bound(
+    case: CaseLike,
+    output: str | os.PathLike[str] | None = None,
+    *,
+    stage: str | None = None,
+    overwrite: bool = False,
+    timeout: float | None = None,
+) -> Bound:
     """Bounds of the factor of safety by limit analysis, the object of `enmm bound --json`.
 
     `associated`, `level_tops` and `catching` of rigid blocks are upper bounds, and so is `bare`, the associated one
     without the cohesion of joints that open; `estimate` is none, and None where forces do not agree. Rock that yields
-    has `lower` and `upper`. Each has `factor` and `end`, and all but `lower` a `mechanism`. `stage` is the static stage after which the slope is
-    looked at. `output` is a directory for `report.html`, which shows the mechanism; without it no page is left. Raises
-    CaseError for a case that limit analysis cannot treat.
+    has `lower` and `upper`. Each has `factor` and `end`, and all but `lower` a `mechanism`. `stage` is the static stage
+    after which the slope is looked at. `output` is a directory for `report.html`, which shows the mechanism; without it
+    no page is left. `overwrite` and `timeout` are as those of `run`. Each warning is an EnmmWarning. Raises CaseError
+    for a case that limit analysis cannot treat.
     """
-    words = [] if stage is None else ["--stage", stage]
-    with case_file(case) as path, tempfile.TemporaryDirectory() as page:
-        return record(["bound", path, "--force", "-o", page if output is None else output, *words])
+    found = bounds(case, output, words({"stage": stage, "force": overwrite}), timeout)
+    warn(found["warnings"])
+    return cast(Bound, found)
 
 
-def check(case: CaseLike) -> dict[str, Any]:
+def bounds(
+    case: CaseLike,
+    output: str | os.PathLike[str] | None = None,
+    options: Sequence[object] = (),
+    timeout: float | None = None,
+) -> Record:
+    """Bounds by options that have been checked, without a word of their warnings."""
+    page = _places.make() if output is None else None
+    try:
+        with case_file(case) as path:
+            directory = page or path_of("output", output or "")
+            return record(["bound", path, "-o", directory, *options], timeout=timeout)
+    finally:
+        if page is not None:
+            _places.remove(page)
+
+
+def check(case: CaseLike) -> Check:
     """Builds the model of a case only: the object of `enmm check --json`.
 
-    It has counts, areas (m2), masses (kg/m), the critical step (s), memory (bytes) and warnings. Raises CaseError.
+    It has counts, areas (m2), masses (kg/m), the critical step (s), memory (bytes) and warnings, each of which is an
+    EnmmWarning too. Raises CaseError.
     """
     with case_file(case) as path:
-        return record(["check", path])
+        found = record(["check", path])
+    warn(found["warnings"])
+    return cast(Check, found)

@@ -5,10 +5,6 @@ from typing import NamedTuple
 from ._abi import EventKind
 
 
-class EquilibriumWarning(UserWarning):
-    """The model was not at rest at the end of its initial equilibrium, or the slope failed in it."""
-
-
 class Event(NamedTuple):
     """Something that happened for the first time."""
 

@@ -56,7 +56,8 @@ class StepInfo(NamedTuple):
 
 
 class Energies(NamedTuple):
-    """Energies and works half an internal step ago, as velocities are, per metre of thickness; what contacts, supports and bolts store is that of the start of the last internal step.
+    """Energies and works half an internal step ago, as velocities are, per metre of thickness; what contacts, supports
+    and bolts store is that of the start of the last internal step.
 
     kinetic + strain + potential + damping + yielding equals contact_work + support_work + bolt_work + radiation +
     external_work + baseline + residual.

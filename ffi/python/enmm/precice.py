@@ -195,7 +195,8 @@ class Adapter:
         """Velocity at the end of a step by a unit force on each facet, column by column."""
         unit = 1e-3 * 9.81 * float(self.model.blocks()["mass"].sum()) / len(self.lengths)
         self._apply(dt, self._force)
-        rest, columns = self.velocity().ravel(), []
+        rest = self.velocity().ravel()
+        columns: list[npt.NDArray[np.float64]] = []
         for k in range(self._force.size):
             self.model.restore(start)
             probe = self._force.copy()

@@ -24,7 +24,10 @@ from .ensemble._outputs import NAMES, Output, evaluate
 from .ensemble._variables import transformed
 
 
-class CaseModel(umbridge.Model):  # type: ignore[misc]
+_Model: Any = umbridge.Model
+
+
+class CaseModel(_Model):  # type: ignore[misc, unused-ignore]
     """One input vector with a number for each key, one output vector with the numbers of the output.
 
     `keys` are keys of the case, or a dict from them to what the number is of: "value", "tangent" of an angle that the
@@ -42,7 +45,7 @@ class CaseModel(umbridge.Model):  # type: ignore[misc]
         names: Sequence[str] = (),
         options: Mapping[str, Any] | None = None,
     ) -> None:
-        super().__init__(name)
+        _Model.__init__(self, name)
         if isinstance(output, str) and output not in NAMES:
             raise invalid(f"output: is {output!r}, must be one of {', '.join(NAMES)}, or a function of a case")
         self._case, self._output, self._options = Case.of(case), output, dict(options or {})
@@ -90,7 +93,8 @@ def serve(
     """
     model = CaseModel(case, keys, output, **options)
     # `serve_models` takes no address and would listen at all of them.
-    web = umbridge.um.web
+    bridge: Any = umbridge
+    web = bridge.um.web
     here = SimpleNamespace(**{**vars(web), "run_app": partial(web.run_app, host=host)})
-    with patch.object(umbridge.um, "web", here):
-        umbridge.serve_models([model], port, max_workers=workers)
+    with patch.object(bridge.um, "web", here):
+        bridge.serve_models([model], port, max_workers=workers)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import enmm
 
-SLOPE = Path(__file__).resolve().parents[3] / "examples" / "cases" / "coupled_slope.toml"
+SLOPE = enmm.examples()["coupled_slope"]
 FORCE = (0.9e6, 0.56e6)
 """Force (N/m) that the case puts on the toe at the start."""
 

@@ -468,7 +468,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         columns: model.columns.iter().map(|c| ColumnState::at_rest(c.node_count())).collect(),
         acceleration: Vec::new(),
         static_stretch: 0.0,
-        events: Events::none(model.covers.block_count(), model.trace_law.len()),
+        events: Events::none(model.covers.block_count(), model.trace_law.len(), model.ports.len()),
         ledger: Default::default(),
         counters: Default::default(),
     })

@@ -23,6 +23,7 @@ mod tasks;
 mod test;
 mod venv;
 mod wheel;
+mod zig;
 
 use std::process::ExitCode;
 
@@ -68,6 +69,7 @@ fn main() -> ExitCode {
             install::install(&repository, prefix.as_ref()).map(|()| ExitCode::SUCCESS)
         }
         ["wheel"] => wheel::build(&repository, &platform::HERE).map(|_| ExitCode::SUCCESS),
+        ["wheel", "--old"] => wheel::build(&repository, &platform::OLD_LINUX).map(|_| ExitCode::SUCCESS),
         ["windows", ref words @ ..] => cross::run(&repository, &platform::WINDOWS, words).map(|()| ExitCode::SUCCESS),
         ["aarch64", ref words @ ..] => cross::run(&repository, &platform::AARCH64, words).map(|()| ExitCode::SUCCESS),
         ["ensembles"] => Ok(test::python(&repository, "ensembles", Share::Ensembles)),
@@ -78,6 +80,7 @@ fn main() -> ExitCode {
         ["bits", ref words @ ..] => bits::run(&repository, words).map(|()| ExitCode::SUCCESS),
         ["schema"] => tasks::write_schema(&repository).map(|()| ExitCode::SUCCESS),
         ["reference"] => book::write_reference(&repository).map(|()| ExitCode::SUCCESS),
+        ["api"] => python::write_api(&repository).map(|()| ExitCode::SUCCESS),
         ["book"] => book::build(&repository).map(|()| ExitCode::SUCCESS),
         ["pictures"] => tasks::write_pictures(&repository).map(|()| ExitCode::SUCCESS),
         _ => Err(usage()),

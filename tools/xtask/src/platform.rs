@@ -1,6 +1,6 @@
 //! Platforms that program and libraries are built for: this one, and those that Debian has cross compilers for.
 
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX, OS};
+use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, EXE_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -12,6 +12,8 @@ pub struct Platform {
     pub name: &'static str,
     /// Requirements of a cross build; none for this machine.
     pub cross: Option<Cross>,
+    /// Version of the C library of Linux that programs are linked against by zig; none for that of this machine.
+    pub glibc: Option<&'static str>,
     library: [&'static str; 2],
     program: &'static str,
     /// Program that removes symbols, with its options.
@@ -50,6 +52,7 @@ pub struct Cross {
 pub const HERE: Platform = Platform {
     name: "here",
     cross: None,
+    glibc: None,
     library: [DLL_PREFIX, DLL_SUFFIX],
     program: EXE_SUFFIX,
     strip: match OS.as_bytes() {
@@ -60,6 +63,9 @@ pub const HERE: Platform = Platform {
     cargo: "",
     profile: "release",
 };
+
+/// This machine with the C library of Linux systems of 2018 and later: Debian 10, RHEL 8.
+pub const OLD_LINUX: Platform = Platform { name: "old-linux", glibc: Some("2.28"), ..HERE };
 
 /// Windows by mingw-w64.
 pub const WINDOWS: Platform = Platform {
@@ -144,22 +150,28 @@ impl Platform {
         repository.target.join(self.cargo)
     }
 
+    /// Name of the target of the compiler, where cargo is given one.
+    pub fn triple(&self) -> Option<String> {
+        let old = self.glibc.map(|_| format!("{ARCH}-unknown-linux-gnu"));
+        self.cross.as_ref().map(|cross| cross.triple.to_owned()).or(old)
+    }
+
     /// Folder in which cargo leaves what it builds.
     pub fn built(&self, repository: &Repository) -> PathBuf {
-        match &self.cross {
+        match self.triple() {
             None => repository.built(),
-            Some(cross) => self.cargo(repository).join(cross.triple).join(self.profile),
+            Some(triple) => self.cargo(repository).join(triple).join(self.profile),
         }
     }
 
     /// Folder of the binaries as they are shipped.
     pub fn shipped(&self, repository: &Repository) -> PathBuf {
-        repository.target.join(if self.cross.is_some() { self.name } else { "wheel-binaries" })
+        repository.target.join(if self.triple().is_some() { self.name } else { "wheel-binaries" })
     }
 
     /// Folder of the wheel.
     pub fn wheels(&self, repository: &Repository) -> PathBuf {
-        if self.cross.is_some() { self.shipped(repository).join("wheels") } else { repository.target.join("wheels") }
+        if self.triple().is_some() { self.shipped(repository).join("wheels") } else { repository.target.join("wheels") }
     }
 
     /// Copies a binary without its symbols and line tables, which only developers need.

@@ -10,6 +10,8 @@ use crate::repository::{self, Repository, succeeds};
 use crate::venv::{self, Packages};
 use crate::wheel;
 
+/// Compares the page of the Python API with the package, or writes it.
+const API: &str = "python_tests/test_api_page.py";
 /// Short case whose results the Python tests read.
 const CASE: &str = "python_tests/short.toml";
 /// Cases that the Python tests have as FMUs of both versions.
@@ -20,7 +22,8 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "g
 
 /// Those of the interfaces: the C library by ctypes, FMUs by FMPy, results, coupling. They need the usual packages
 /// alone.
-const USUAL: [&str; 12] = [
+const USUAL: [&str; 13] = [
+    API,
     "python_tests/test_coupling.py",
     "python_tests/test_ctypes.py",
     "python_tests/test_ctypes_life.py",
@@ -85,6 +88,12 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
         return Err("pytest failed without a failed test".to_owned());
     }
     Ok(counts)
+}
+
+/// Writes the page of the Python API from the docstrings of the package.
+pub fn write_api(repository: &Repository) -> Result<(), String> {
+    let mut pytest = venv::command(repository, Packages::Usual)?;
+    repository::run(pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", API]).env("ENMM_WRITE_API", "1"))
 }
 
 /// Installs programs and libraries that a few tests need, where Debian's packages can be; without them these tests skip

@@ -8,6 +8,7 @@ use crate::platform::Platform;
 use crate::repository::{self, Repository};
 use crate::supply;
 use crate::venv;
+use crate::zig;
 
 /// Folder of the package `enmm`.
 const PACKAGE: &str = "ffi/python";
@@ -34,7 +35,11 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
         let settings = cross.clone().flat_map(|cross| cross.settings.iter().copied());
         repository::run(cargo.args(cross.flat_map(|cross| ["--target", cross.triple])).envs(settings))
     };
-    build(repository.cargo_to_ship(&["build", "--release"]).args(packages()))?;
+    let mut cargo = match (platform.glibc, platform.triple()) {
+        (Some(glibc), Some(triple)) => zig::build(repository, &triple, glibc)?,
+        _ => repository.cargo_to_ship(&["build", "--release"]),
+    };
+    build(cargo.args(packages()))?;
     for name in platform.cross.iter().flat_map(|cross| cross.alone) {
         let library = ["rustc", "--release", "--package", name, "--lib", "--crate-type", "cdylib"];
         build(&mut repository.cargo_to_ship(&library))?;

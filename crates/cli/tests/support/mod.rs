@@ -54,6 +54,11 @@ impl Place {
         answer
     }
 
+    /// The program, whose standard input the test holds.
+    pub fn start_held(&self, arguments: &[&str]) -> Child {
+        self.command(arguments).stdin(Stdio::piped()).spawn().expect("the program runs")
+    }
+
     pub fn start(&self, arguments: &[&str]) -> Child {
         let mut command = self.command(arguments);
         command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program runs")

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use enmm::engine_version;
 use enmm::model::case::EnsembleOutput;
-use enmm_ensemble::{Identity, Row, Samples, Store, sample_key, work};
+use enmm_ensemble::{Given, Identity, Row, Samples, Store, sample_key, work};
 use enmm_io::LoadedCase;
 
 use super::{Answer, EnsembleError, EnsembleOptions, SearchOptions, columns};
@@ -134,7 +134,7 @@ impl<'a> Answers<'a> {
             case: self.loaded.hash.clone(),
             version: engine_version().to_owned(),
             output: output.name().to_owned(),
-            options: search.given(),
+            options: search.given().into_iter().map(|(name, value)| (name, Given::Number(value))).collect(),
         };
         samples.iter().map(|&k| sample_key(&identity, &self.keys, &self.rows[k])).collect()
     }

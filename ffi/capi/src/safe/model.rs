@@ -380,7 +380,8 @@ pub fn interpolation(mode: i32) -> Result<Interpolation, Failure> {
 
 /// An event in words; the mesh size (m) is what the depth of an overlap is compared with.
 fn sentence(event: &Event, mesh_size: f64) -> String {
-    let (subject, time) = (event.subject, event.time);
+    // Digits beyond a nanosecond are those of the sum of steps.
+    let (subject, time) = (event.subject, (event.time * 1e9).round() / 1e9);
     match event.kind {
         EventKind::Detached => format!("t = {time} s: block {subject} lost its last contact"),
         EventKind::Slipped if subject == u32::MAX => format!("t = {time} s: a contact away from joints slipped"),

@@ -1,7 +1,6 @@
 """The driver: gives samples to workers, stores every answer at once, and returns the table of all."""
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -16,9 +15,11 @@ from contextlib import ExitStack
 from functools import partial
 from typing import Any, NamedTuple
 
+from .. import _tasks
 from .._case import Case
-from .._errors import invalid
+from .._errors import invalid, warn
 from .._library import load_library
+from .._options import whole
 from .._program import CaseLike
 from .._progress import Bar
 from ._outputs import DECIDING, NAMES, Answer, Output, evaluate
@@ -87,6 +88,8 @@ def run(
     works them out again. Raises EnsembleError when workers were lost again and again.
     """
     base = Case.of(case)
+    n = whole("n", n, 1, 10**7)
+    _tasks.search_options(**(options or {}))
     _check(base, variables, output)
     if store is not None and "<" in _name(output):
         raise invalid(
@@ -120,17 +123,13 @@ def run(
     ensemble = Ensemble(base, dict(variables), samples, rows, name, limit, method, seed)
     if ensemble.failed:
         first = ensemble.failed[0]
-        warnings.warn(
-            f"{len(ensemble.failed)} of {len(rows)} samples have no answer and count neither as failed nor as stable slopes; "
-            f"the first, sample {first[0]}: {first[1]}",
-            stacklevel=2,
-        )
+        lost = f"{len(ensemble.failed)} of {len(rows)} samples have no answer"
+        counted = "count neither as failed nor as stable slopes"
+        warn([f"{lost} and {counted}; the first, sample {first[0]}: {first[1]}"])
     if ensemble.doubtful:
-        warnings.warn(
-            f"{len(ensemble.doubtful)} of {len(rows)} factors are above the bound of limit analysis (see `Ensemble.doubtful`): "
-            "the slope may have slid before its strength was reduced, and shorter static stages help",
-            stacklevel=2,
-        )
+        many = f"{len(ensemble.doubtful)} of {len(rows)} factors are above the bound of limit analysis"
+        remedy = "the slope may have slid before its strength was reduced, and shorter static stages help"
+        warn([f"{many} (see `Ensemble.doubtful`): {remedy}"])
     return ensemble
 
 
@@ -206,7 +205,8 @@ class _Answers:
 
     def _keys_of(self, output: Output, options: dict[str, Any]) -> list[str]:
         """Keys of all samples in the store."""
-        identity = Identity(self._case.digest, _name(output), {name: float(value) for name, value in options.items()})
+        given = {name: value if isinstance(value, str) else float(value) for name, value in options.items()}
+        identity = Identity(self._case.digest, _name(output), given)
         name = repr(identity)
         if name not in self._keys:
             self.samples, self._keys[name] = draw_with_keys(*self._draw, identity)

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from .. import _tasks
 from .._case import Case
 from .._errors import CaseError, InvalidArgumentError, Status, StepError
+from .._results import Fos, RunError
 
 Output = str | Callable[[Case], float | Mapping[str, Any]]
 """`factor_of_safety`, `level_tops` or `associated` (limit analysis), `failure` (whether the factor is below the limit),
@@ -20,6 +21,8 @@ DECIDING = {
 }
 """The column of each output that decides whether a sample fails."""
 NAMES = tuple(DECIDING)
+_ALONE: dict[str, Any] = {"threads": 1}
+"""Options of a search that others go beside."""
 
 
 class Answer(NamedTuple):
@@ -42,16 +45,17 @@ def evaluate(
     try:
         outputs = _outputs(case.with_values(values), output, options, hear)
         return Answer(outputs, "", time.perf_counter() - start)
-    except (CaseError, StepError, InvalidArgumentError, _tasks.RunError) as error:
+    except (CaseError, StepError, InvalidArgumentError, RunError) as error:
         return Answer({}, str(error), time.perf_counter() - start)
 
 
 def _outputs(case: Case, output: Output, options: dict[str, Any], hear: Callable[[str], None] | None) -> dict[str, Any]:
     if output == "factor_of_safety":
-        with _tasks.fos(case, threads=1, pictures=False, progress=hear or False, **options) as found:
+        given = _tasks.search_options(**(_ALONE | options)) | {"no-pictures": True}
+        with _tasks.search(case, None, given, progress=hear or False) as found:
             return _of_fos(found)
     if isinstance(output, str):
-        collapse = _tasks.bound(case)[output]
+        collapse = _tasks.bounds(case)[output]
         return {output: float(collapse["limit"]), "status": str(collapse["end"])}
     answer = output(case)
     if isinstance(answer, Mapping):
@@ -59,7 +63,7 @@ def _outputs(case: Case, output: Output, options: dict[str, Any], hear: Callable
     return {"output": float(answer)}
 
 
-def _of_fos(found: "_tasks.Fos") -> dict[str, Any]:
+def _of_fos(found: Fos) -> dict[str, Any]:
     """Factor and what fails. A factor beyond the search is its limit, with the status that says so; one above an upper
     bound is the bound."""
     low, high = found.bracket

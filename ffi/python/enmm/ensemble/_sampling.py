@@ -27,7 +27,7 @@ class Identity(NamedTuple):
     """Fingerprint of the case."""
     output: str = ""
     """Name of the output."""
-    options: Mapping[str, float] = {}
+    options: Mapping[str, float | str] = {}
     """Options of the search."""
 
 
@@ -71,7 +71,7 @@ def draw_with_keys(
         "ensemble": {"samples": n, "sampling": method, "seed": seed},
         **identity._asdict(),
     }
-    status, out, error = _program.call(["draw"], given=json.dumps(request))
+    status, out, error = _program.answer(["draw"], json.dumps(request))
     if status != 0:
         raise invalid(_program.message_of(status, error).replace("random_correlation: ", "correlations: "))
     answer = json.loads(out)

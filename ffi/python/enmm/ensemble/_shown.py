@@ -79,5 +79,9 @@ class DaskTrials:
 
     def subscribe(self, client: Any, hear: TrialHeard) -> Callable[[], None]:
         """On the driver; returns what ends it."""
-        client.subscribe_topic(self.topic, lambda event: hear(event[1]["sample"], event[1]["text"]))
+
+        def take(event: Any) -> None:
+            hear(event[1]["sample"], event[1]["text"])
+
+        client.subscribe_topic(self.topic, take)
         return lambda: client.unsubscribe_topic(self.topic)

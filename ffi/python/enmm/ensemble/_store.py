@@ -49,7 +49,7 @@ class Store(Closing):
 
     def find(self, keys: Iterable[str]) -> dict[str, Row]:
         """The samples of those of the keys that are there."""
-        found = {}
+        found: dict[str, Row] = {}
         for key in keys:
             row = self._database.execute("select status, outputs, message from sample where key = ?", (key,)).fetchone()
             if row is not None:

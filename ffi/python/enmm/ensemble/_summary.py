@@ -73,7 +73,7 @@ class Ensemble:
     @property
     def doubtful(self) -> list[tuple[int, str]]:
         """Samples whose factor of safety is above the bound of limit analysis, with the warning of the program."""
-        texts = self.table["doubt"].tolist() if "doubt" in self.table else []
+        texts: list[str] = self.table["doubt"].tolist() if "doubt" in self.table else []
         return [(int(self.table["sample"][i]), text) for i, text in enumerate(texts) if text]
 
     @property
@@ -123,8 +123,9 @@ class Ensemble:
             return {key: float(np.corrcoef(_ranks(x), ranks)[0, 1]) for key, x in zip(keys, given, strict=True)}
         if method != "pawn":
             raise invalid(f"method: is {method!r}, must be one of spearman, pawn")
-        from SALib.analyze import pawn
+        import SALib.analyze.pawn
 
+        pawn: Any = SALib.analyze.pawn
         bounds = [[float(x.min()), float(x.max())] for x in given]
         problem = {"num_vars": len(keys), "names": keys, "bounds": bounds}
         answer = pawn.analyze(problem, given.T, self.values, seed=self.seed)
@@ -161,11 +162,10 @@ class Ensemble:
         """Draws the output over every variable by matplotlib; returns the figure."""
         keys = [key for key, variable in self.variables.items() if isinstance(variable, Distribution)]
         if figure is None:
-            import matplotlib.pyplot as plt
-
-            figure = plt.figure(figsize=(4.5 * max(len(keys), 1), 4), layout="constrained")
+            figure = _plots.new_figure((4.5 * max(len(keys), 1), 4))
         bad = self.values < self.limit
-        for key, ax in zip(keys, np.atleast_1d(figure.subplots(1, max(len(keys), 1), sharey=True)), strict=False):
+        drawn: Any = np.atleast_1d(figure.subplots(1, max(len(keys), 1), sharey=True))
+        for key, ax in zip(keys, drawn, strict=False):
             ax.plot(
                 self.table[key][~bad], self.values[~bad], "o", ms=3, color="tab:blue", label="at or above the limit"
             )
