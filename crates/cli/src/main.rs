@@ -10,6 +10,7 @@ mod edit;
 mod fmu;
 mod fos;
 mod import;
+mod interrupt;
 mod manual;
 mod new;
 mod output;
@@ -104,6 +105,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    interrupt::outlive_full_files();
     match Arguments::try_parse() {
         Ok(arguments) => output::finish(execute(arguments.command).unwrap_or_else(|failure| failure.tell())),
         Err(told) => output::tell(&told),

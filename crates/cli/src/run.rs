@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use enmm_io::LoadedCase;
@@ -11,11 +10,9 @@ use enmm_run::summary::OVER;
 use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::case::CaseArguments;
+use crate::interrupt::{INTERRUPT, listen};
 use crate::progress::Screen;
 use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SLOPE_FAILED, fail, print_line, tell_line};
-
-/// Set by the first interrupt.
-pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
 
 /// Arguments of `enmm run`.
 #[derive(Args)]
@@ -45,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let loaded = arguments.case.load().or_fail(BAD_INPUT)?;
     listen()?;
     let options = RunOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
+        directory: results_folder(arguments.output.as_ref(), directory_of(&arguments.case.path), arguments.force)?,
         resume: arguments.resume.clone(),
         threads: arguments.threads.map(usize::from),
         interrupt: Some(&INTERRUPT),
@@ -70,14 +67,20 @@ pub fn check_folder(directory: &Path, loaded: &LoadedCase, force: bool) -> std::
     if force { Ok(()) } else { enmm_run::check_owner(directory, loaded.source.file()) }
 }
 
-/// From now on the first interrupt requests a checkpoint, and the second ends the program at once.
-pub fn listen() -> Result<(), Failure> {
-    let interrupt = || {
-        if INTERRUPT.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(INTERRUPTED));
+/// The folder for results: the one that the user names, or a default one. A link in the place of that, which may have
+/// come with the case, would lead the results out of this folder.
+pub fn results_folder(named: Option<&PathBuf>, default: PathBuf, force: bool) -> Result<PathBuf, Failure> {
+    if let Some(named) = named {
+        return Ok(named.clone());
+    }
+    match default.ancestors().find(|path| path.is_symlink()).filter(|_| !force) {
+        None => Ok(default),
+        Some(link) => {
+            let (link, default) = (link.display(), default.display());
+            let message = format!("{link}: is a link; to write results through it give -o {default} or --force");
+            Err(Failure::new(message, BAD_INPUT))
         }
-    };
-    ctrlc::set_handler(interrupt).map_err(|error| format!("cannot listen for interrupts ({error})")).or_fail(FAILED)
+    }
 }
 
 /// Prints a record that was written into the folder of the results.
