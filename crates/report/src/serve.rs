@@ -294,7 +294,8 @@ impl Request {
 fn send(out: &mut impl Write, kind: &str, length: u64, body: &mut dyn Read) -> io::Result<()> {
     let head = format!(
         "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nCache-Control: no-store\r\n\
-         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n"
+         X-Content-Type-Options: nosniff\r\nContent-Security-Policy: frame-ancestors 'self'\r\n\
+         Connection: close\r\n\r\n"
     );
     out.write_all(head.as_bytes())?;
     io::copy(body, out).map(drop)
