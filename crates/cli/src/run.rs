@@ -1,5 +1,6 @@
 //! `enmm run`: runs a case and reports where the results are.
 
+use enmm::model::case::keys::rounded;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -124,15 +125,23 @@ fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
         },
         (RunStatus::Interrupted, _) => {
             let place = checkpoint.display();
-            fail(&format!("interrupted at t = {:.6} s; continue with --resume {place}", summary.time), INTERRUPTED)
+            fail(
+                &format!("interrupted at t = {} s; continue with --resume {place}", rounded(summary.time)),
+                INTERRUPTED,
+            )
         }
         (RunStatus::Failed, failure) => {
             let cause = failure.as_ref().map_or_else(String::new, |failure| {
                 let [x, y] = failure.place;
-                format!("block {} at ({x:.3}, {y:.3}) m, t = {:.6} s: {}", failure.block, failure.time, failure.cause)
+                format!(
+                    "block {} at ({x:.3}, {y:.3}) m, t = {} s: {}",
+                    failure.block,
+                    rounded(failure.time),
+                    failure.cause
+                )
             });
-            let (time, place) = (summary.time, checkpoint.display());
-            fail(&format!("{cause}; the last good state, t = {time:.6} s, is in {place}"), FAILED)
+            let (time, place) = (rounded(summary.time), checkpoint.display());
+            fail(&format!("{cause}; the last good state, t = {time} s, is in {place}"), FAILED)
         }
     }
 }
@@ -143,11 +152,11 @@ fn table(summary: &Summary, directory: &Path) -> String {
     row("verdict", summary.verdict.clone());
     row("results", directory.display().to_string());
     row("page to open", directory.join(PAGE).display().to_string());
-    row("simulated time", format!("{:.6} s in {} steps", summary.time, summary.steps));
+    row("simulated time", format!("{} s in {} steps", rounded(summary.time), summary.steps));
     for stage in &summary.stages {
         let outcome = stage.outcome();
         let end = if outcome == OVER { String::new() } else { format!(", {outcome}") };
-        row(&format!("stage {}", stage.name), format!("{:.4} s, {} steps{end}", stage.time, stage.steps));
+        row(&format!("stage {}", stage.name), format!("{} s, {} steps{end}", rounded(stage.time), stage.steps));
     }
     let open_close = &summary.open_close;
     row(

@@ -258,7 +258,10 @@ fn has_other_names(_: &fs::Metadata) -> bool {
 fn check(folder: &Path, inputs: &[(&Path, Handle)]) -> io::Result<()> {
     let frames = folder.join(FRAMES);
     if frames.is_symlink() || frames.exists() && !frames.is_dir() {
-        return Err(taken(&frames, "is no directory, or a link to one, but frames go into a directory of this name, and old ones leave it"));
+        return Err(taken(
+            &frames,
+            "is no directory, or a link to one, but frames go into a directory of this name, and old ones leave it",
+        ));
     }
     let goes = |name: &PathBuf| is_result(name) || unfinished_result(name).is_some();
     let results = names(folder)?.into_iter().filter(goes);
