@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 /// Characters without a sign of their own, which turn, part or hide a text: joiners, marks and overrides of direction,
 /// soft hyphens, separators of lines, annotations, tags.
-const HIDDEN: [RangeInclusive<char>; 9] = [
+const HIDDEN: [RangeInclusive<char>; 10] = [
     '\u{ad}'..='\u{ad}',
     '\u{61c}'..='\u{61c}',
     '\u{180e}'..='\u{180e}',
@@ -13,6 +13,8 @@ const HIDDEN: [RangeInclusive<char>; 9] = [
     '\u{2060}'..='\u{206f}',
     '\u{feff}'..='\u{feff}',
     '\u{fff9}'..='\u{fffb}',
+    // XML has no sign for these two.
+    '\u{fffe}'..='\u{ffff}',
     '\u{e0000}'..='\u{e007f}',
 ];
 

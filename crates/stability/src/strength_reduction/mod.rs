@@ -248,7 +248,7 @@ pub enum ReductionError {
     /// The slope does not come to rest, whatever its strength.
     #[error(
         "stage {stage:?} does not come to rest within {} s even with {HELD} times the strength (unbalanced \
-         ratio {unbalanced:.2e}): lengthen the stage's duration, or hold or excavate the blocks that are loose",
+         ratio {unbalanced:.2e}): {remedy}",
         rounded(*time)
     )]
     NotAtRest {
@@ -258,6 +258,8 @@ pub enum ReductionError {
         time: f64,
         /// Unbalanced ratio then.
         unbalanced: f64,
+        /// What to do.
+        remedy: &'static str,
     },
     /// A numerical failure before the trials.
     #[error("before the trials: {0}")]
