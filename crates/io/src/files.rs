@@ -54,6 +54,8 @@ impl Unfinished {
     pub fn beside(place: &Path) -> io::Result<(Self, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let name = place.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "no file name"))?;
+        // No result has so long a name, and a file system has no room for more than 255 bytes.
+        let name = if name.len() > 200 { std::ffi::OsStr::new("unfinished") } else { name };
         loop {
             let mut hidden = std::ffi::OsString::from(".");
             hidden.push(name);
@@ -172,12 +174,12 @@ pub fn read_input(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Copies a regular file to a place of its own: a link of that name is replaced and not followed.
+/// Copies a file of a folder of results to a place of its own: a link of that name is replaced and not followed.
 ///
 /// # Errors
-/// As [`open_input`], or what the file system refuses at the other end.
+/// As [`open_result`], or what the file system refuses at the other end.
 pub fn copy_file(from: &Path, to: &Path) -> io::Result<()> {
-    let mut input = open_input(from).map_err(at_path(from))?;
+    let mut input = open_result(from).map_err(at_path(from))?;
     remove_if_there(to)
         .and_then(|()| File::create_new(to))
         .and_then(|mut out| io::copy(&mut input, &mut out))

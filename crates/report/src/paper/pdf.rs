@@ -159,7 +159,12 @@ fn wait(child: &mut Child, interrupt: &AtomicBool) -> io::Result<Option<ExitStat
 /// A folder for the profile of a browser, which no other user can make beforehand or enter; it goes when it is dropped.
 /// Those that killed processes of this user have left go now.
 fn profile() -> io::Result<TempDir> {
-    let profile = tempfile::Builder::new().prefix(&format!("{PROFILE}{}-", std::process::id())).tempdir()?;
+    let prefix = format!("{PROFILE}{}-", std::process::id());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    let profile = builder.tempdir()?;
     for entry in fs::read_dir(env::temp_dir())?.flatten() {
         let name = entry.file_name();
         let process = name.to_str().and_then(|name| name.strip_prefix(PROFILE)?.split_once('-')?.0.parse().ok());

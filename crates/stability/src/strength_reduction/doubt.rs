@@ -221,6 +221,19 @@ fn slid(trials: &[Trial], counts: impl Fn(&&Trial) -> bool, fate: &str) -> Optio
 mod tests {
     use super::*;
 
+    #[test]
+    fn blocks_are_soft_by_their_weight_and_height() {
+        let mut case = Case::default();
+        case.domain.outline = vec![[0.0, 0.0], [20.0, 0.0], [20.0, 4.0], [8.0, 12.0], [0.0, 12.0]];
+        let rock = Rock { density: 2600.0, young: 110e6, poisson: 0.25, ..Rock::default() };
+        case.rocks.insert("rock".to_owned(), rock);
+        assert_eq!(soft(&case), None, "306 kPa of 110 MPa");
+        case.rocks.get_mut("rock").expect("a rock").young = 20e6;
+        assert!(soft(&case).is_some_and(|told| told.contains("rock.rock.young") && told.contains("1.5e-2")));
+        case.gravity.y = 0.0;
+        assert_eq!(soft(&case), None);
+    }
+
     /// Associated flow leaves all strength; without dilation cos φ of it is left, at the friction that a factor leaves.
     #[test]
     fn flow_that_does_not_dilate_leaves_a_share_of_the_strength() {
