@@ -31,7 +31,8 @@ fn a_link_in_the_place_of_a_default_folder_is_not_followed_unasked() {
     assert!(place.path("precious/summary.json").is_file());
 }
 
-/// Names of unfinished files can be foreseen: those that are there are left alone, and swept when their process is gone.
+/// Names of unfinished files can be foreseen: those that are there are left alone, and swept when their process has
+/// gone.
 #[test]
 fn unfinished_files_replace_nothing_and_are_swept_by_the_names_of_results() {
     let place = Place::with(&case(0.01));
