@@ -223,10 +223,14 @@ mod tests {
 
     #[test]
     fn blocks_are_soft_by_their_weight_and_height() {
-        let mut case = Case::default();
-        case.domain.outline = vec![[0.0, 0.0], [20.0, 0.0], [20.0, 4.0], [8.0, 12.0], [0.0, 12.0]];
-        let rock = Rock { density: 2600.0, young: 110e6, poisson: 0.25, ..Rock::default() };
-        case.rocks.insert("rock".to_owned(), rock);
+        let text = r#"
+title = "slide"
+domain = { outline = [[0, 0], [20, 0], [20, 4], [8, 12], [0, 12]] }
+mesh = { size = 2 }
+rock.rock = { density = 2600, young = 110e6, poisson = 0.25 }
+stage = [{ name = "rest", kind = "static", duration = 1 }]
+"#;
+        let mut case = enmm_io::parse_case(text, "case.toml", std::path::Path::new("")).expect("a case").case;
         assert_eq!(soft(&case), None, "306 kPa of 110 MPa");
         case.rocks.get_mut("rock").expect("a rock").young = 20e6;
         assert!(soft(&case).is_some_and(|told| told.contains("rock.rock.young") && told.contains("1.5e-2")));
