@@ -60,3 +60,23 @@ def test_a_notebook_has_bars_pages_and_tables_without_being_asked(package, short
     assert not any("<progress" in page for page in pages), "bars go away"
     count, ended, trials = printed(notebook.cells[4]).split()
     assert int(count) > 3 and (ended, trials) == ("True", "True")
+
+
+def test_a_folder_of_a_stranger_reaches_neither_the_notebook_nor_other_files(package, tmp_path):
+    from enmm import _html
+
+    page = tmp_path / "report.html"
+    page.write_text("<script>parent.document.title = 'taken'</script>")
+    frame = _html.frame(page, 300)
+    assert 'sandbox="allow-scripts allow-downloads"' in frame and "taken" in frame
+    picture, secret = tmp_path / "deformed.png", tmp_path / "secret"
+    secret.write_bytes(b"\x89PNG\r\n")
+    assert "base64" in _html.picture(secret, "a picture")
+    picture.symlink_to(secret)
+    assert _html.picture(picture, "a picture") == ""
+    secret.write_bytes(b"no picture")
+    assert _html.picture(secret, "a picture") == ""
+    page.unlink()
+    page.symlink_to(secret)
+    with pytest.raises(package.InvalidArgumentError, match="no regular file"):
+        _html.frame(page, 300)

@@ -3,6 +3,7 @@
 use crate::model::case::Invalid;
 use crate::state::bytes::BytesError;
 use crate::step::StepError;
+use enmm_case::keys::Plain;
 
 use super::ParameterError;
 
@@ -36,7 +37,10 @@ pub enum CosimulationError {
         ports: String,
     },
     /// A communication step does not begin where the model stands.
-    #[error("t: is {given} s, must be the time of the model, {own} s; step from there, or restore a saved state")]
+    #[error(
+        "t: is {} s, must be the time of the model, {} s; step from there, or restore a saved state",
+        Plain(*given), Plain(*own)
+    )]
     Time {
         /// Start that the host gave (s).
         given: f64,

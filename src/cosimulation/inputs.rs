@@ -4,6 +4,7 @@
 //! [`Interpolation::Linear`](super::Interpolation) (Eq. 32). In the ramp of a first static stage all inputs grow with
 //! gravity.
 
+use enmm_case::keys::Plain;
 use std::fmt::Display;
 
 use crate::cover::BlockId;
@@ -221,7 +222,7 @@ fn number(name: &dyn Display, value: f64, most: f64, unit: &str) -> Result<(), C
         return Ok(());
     }
     let limit = format!("a finite number of at most {most:e} {unit} in magnitude");
-    let (name, value) = (name.to_string(), format!("{value} {unit}"));
+    let (name, value) = (name.to_string(), format!("{} {unit}", Plain(value)));
     Err(CosimulationError::value(name, value, &limit, "correct the value; the old one still holds"))
 }
 

@@ -7,6 +7,7 @@
 use crate::model::SlopeFailure;
 use crate::state::{Counters, Event, EventKind};
 use crate::step::Wanted;
+use enmm_case::keys::Plain;
 
 use super::{Cosimulation, CosimulationError, Interpolation};
 
@@ -253,7 +254,12 @@ impl Cosimulation {
         let most = STEPS_MAX * self.internal_step();
         if !(h > 0.0 && h <= most) {
             let limit = format!("greater than 0 and at most {most:e} s");
-            return Err(CosimulationError::value("h", format!("{h} s"), &limit, "give a positive, finite step"));
+            return Err(CosimulationError::value(
+                "h",
+                format!("{} s", Plain(h)),
+                &limit,
+                "give a positive, finite step",
+            ));
         }
         Ok(t + h)
     }

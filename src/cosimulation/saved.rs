@@ -1,5 +1,6 @@
 //! Saved states: all that a model needs to go on with the same bits, in memory or as bytes for another process.
 
+use enmm_case::keys::Plain;
 use serde::{Deserialize, Serialize};
 
 use crate::model::Simulation;
@@ -147,11 +148,11 @@ impl Cosimulation {
         }
         let own = self.internal_step();
         if saved.dt.to_bits() != own.to_bits() {
-            let limit = format!("{own} s, that of this model");
+            let limit = format!("{} s, that of this model", Plain(own));
             let remedy = "keep what changes the internal step, such as Young's moduli, or give the case a shorter one";
             return Err(CosimulationError::value(
                 "internal step of the state",
-                format!("{} s", saved.dt),
+                format!("{} s", Plain(saved.dt)),
                 &limit,
                 remedy,
             ));

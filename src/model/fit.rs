@@ -1,6 +1,7 @@
 //! Whether a state that comes from outside can be one of this model: lengths, indices and numbers. What passes makes no
 //! index go astray and no square of a number overflow; the error names the first value that does not fit.
 
+use enmm_case::keys::Plain;
 use std::fmt::Display;
 
 use crate::contact::{
@@ -48,7 +49,7 @@ pub fn number(what: impl Display, value: f64, most: f64) -> Fit {
     if value.is_finite() && value.abs() <= most {
         return Ok(());
     }
-    unfit(what, value, format!("a finite number of at most {most:e} in magnitude"))
+    unfit(what, Plain(value), format!("a finite number of at most {most:e} in magnitude"))
 }
 
 /// Checks a number that lies between two others.
@@ -59,7 +60,7 @@ pub fn between(what: impl Display, value: f64, low: f64, high: f64) -> Fit {
     if (low..=high).contains(&value) {
         Ok(())
     } else {
-        unfit(what, value, format!("at least {low:e} and at most {high:e}"))
+        unfit(what, Plain(value), format!("at least {low:e} and at most {high:e}"))
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::cover::{self, BlockId, ElementId};
 use crate::geometry::Point;
 use crate::state::{Model, State, Workspace};
+use enmm_case::keys::rounded;
 
 use super::StepOutcome;
 
@@ -35,7 +36,7 @@ pub enum Failure {
 
 /// A numerical failure with its block, position and time.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("block {block} at ({:.3}, {:.3}) m, t = {time:.6} s: {failure}", position.x, position.y)]
+#[error("block {block} at ({:.3}, {:.3}) m, t = {} s: {failure}", position.x, position.y, rounded(*time))]
 pub struct StepError {
     /// Block.
     pub block: u32,

@@ -30,6 +30,7 @@ pub mod record;
 mod rock;
 mod solver;
 mod stage;
+pub mod text;
 mod validate;
 mod water;
 

@@ -11,5 +11,9 @@ pub const LEVEL_MAX: f64 = 1e9;
 pub const FACTOR_MAX: f64 = 1e6;
 /// Magnitude of a force (N/m), a moment (N·m/m), a traction or a pressure (Pa).
 pub const VALUE_MAX: f64 = 1e15;
+/// Letters of a name; layers of drawings have as many.
+pub const NAME_MAX: usize = 255;
+/// Letters of a title.
+pub const TITLE_MAX: usize = 10_000;
 /// Threads of a model.
 pub const THREADS_MAX: usize = 1024;

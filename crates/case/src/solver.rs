@@ -1,6 +1,6 @@
 //! Numerical choices of a case.
 
-use crate::keys::shared::{LENGTH, SHARE, TIME};
+use crate::keys::shared::{LENGTH, SHARE, STEP};
 use crate::keys::unit::{BYTE, NUMBER, SECOND};
 use crate::keys::{Range, Rule, keys, words};
 
@@ -46,9 +46,9 @@ keys! {
         pub integrator: Integrator,
         /// Communication step (s); the internal step is an integer fraction of its tenth. Default: ten internal steps
         /// of the stability limit rounded down to two digits.
-        pub communication_step: Option<f64> => TIME.hint("leave it out for the default"),
+        pub communication_step: Option<f64> => STEP.hint("leave it out for the default"),
         /// Largest internal step (s); default: the stability limit.
-        pub dt_max: Option<f64> => TIME.hint("leave it out for the stability limit"),
+        pub dt_max: Option<f64> => STEP.hint("leave it out for the stability limit"),
         /// Share of the stability limit that is used.
         pub dt_safety: f64 = 0.9 => SHARE,
         /// Default stiffness of joints: normal_stiffness = this·(λ+2μ) over 1 m.
@@ -82,7 +82,7 @@ keys! {
         pub newmark: Newmark,
         /// Implicit: internal step (s); default: 20 times the explicit one. It is an integer fraction of the
         /// communication step's tenth as well.
-        pub implicit_step: Option<f64> => TIME.hint("leave it out for 20 explicit steps"),
+        pub implicit_step: Option<f64> => STEP.hint("leave it out for 20 explicit steps"),
         /// Implicit: most open–close iterations in a step before it is cut to 0.3.
         pub iterations_max: u32 = 8 => COUNT,
         /// Implicit: largest displacement in a step, relative to half the height of the model, before it is cut.

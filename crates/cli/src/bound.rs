@@ -13,7 +13,7 @@ use enmm_stability::up_to_stage;
 use serde_json::Value;
 
 use crate::case::CaseArguments;
-use crate::run::{check_folder, directory_for};
+use crate::run::{check_folder, directory_for, results_folder};
 use crate::{BAD_INPUT, FAILED, Failure, OrFail, Outcome, fail, listed, print_line, told};
 
 /// Arguments of `enmm bound`.
@@ -92,7 +92,8 @@ pub fn bound(arguments: &Arguments) -> Outcome {
 
 fn find(arguments: &Arguments) -> Outcome {
     let json = arguments.json;
-    let directory = arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "bound"));
+    let default = directory_for(&arguments.case.path, "bound");
+    let directory = results_folder(arguments.output.as_ref(), default, arguments.force)?;
     let mut loaded = arguments.case.load().or_fail(BAD_INPUT)?;
     let (_held, found) = look(arguments, &mut loaded, &directory).map_err(|error| match error {
         BoundFailure::Case(_) => Failure::new(error, BAD_INPUT).on(&loaded),

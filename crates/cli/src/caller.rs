@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use crate::INTERRUPTED;
-use crate::run::INTERRUPT;
+use crate::interrupt::INTERRUPT;
 
 /// Option of a caller that holds the other end of standard input as long as it lives.
 pub const OPTION: &str = "--with-caller";

@@ -18,8 +18,9 @@ use enmm_stability::strength_reduction::{
 };
 
 use crate::case::CaseArguments;
+use crate::interrupt::{INTERRUPT, listen};
 use crate::progress::Search;
-use crate::run::{INTERRUPT, check_folder, directory_for, listen, print_record};
+use crate::run::{check_folder, directory_for, print_record, results_folder};
 use crate::{
     AT_MOST, BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, fail, listed, print_line, tell_line, told,
 };
@@ -79,8 +80,9 @@ pub fn fos(arguments: &Arguments) -> Outcome {
 }
 
 fn find(arguments: &Arguments) -> Outcome {
+    let default = directory_for(&arguments.case.path, "fos");
     let options = FosOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_for(&arguments.case.path, "fos")),
+        directory: results_folder(arguments.output.as_ref(), default, arguments.force)?,
         low: arguments.low,
         high: arguments.high,
         tolerance: arguments.tolerance,

@@ -11,6 +11,7 @@ mod edit;
 mod fmu;
 mod fos;
 mod import;
+mod interrupt;
 mod manual;
 mod new;
 mod output;
@@ -108,6 +109,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    interrupt::outlive_full_files();
     match Arguments::try_parse() {
         Ok(Arguments { command, with_caller }) => {
             if with_caller {

@@ -5,14 +5,18 @@ use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 use std::sync::Mutex;
 
+use enmm::model::case::text::{is_hidden, visible};
+
 use crate::FAILED;
 
 /// The first line that could not be written.
 static FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Prints a line; a reader that has gone away ends the output quietly, any other failure is reported by [`finish`].
+/// Prints lines, with hidden characters as their codes; a reader that has gone away ends the output quietly, any other
+/// failure is reported by [`finish`].
 pub fn print_line(text: &str) {
-    note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
+    let shown: Vec<String> = text.split('\n').map(visible).collect();
+    note(writeln!(io::stdout(), "{}", shown.join("\n")).and_then(|()| io::stdout().flush()));
 }
 
 fn note(written: io::Result<()>) {
@@ -34,9 +38,15 @@ pub fn listed(names: impl ExactSizeIterator<Item = String>) -> String {
 
 /// Prints the message of the parser of the arguments, help or error, and returns its exit status.
 pub fn tell(told: &clap::Error) -> ExitCode {
-    let written = told.print();
-    if !told.use_stderr() {
-        note(written);
+    // Names of files that a shell has put in may hold what terminals obey.
+    let has_hidden = std::env::args_os().any(|given| given.to_string_lossy().chars().any(is_hidden));
+    if has_hidden && told.use_stderr() {
+        told.render().to_string().trim_end().lines().for_each(tell_line);
+    } else {
+        let written = told.print();
+        if !told.use_stderr() {
+            note(written);
+        }
     }
     finish(ExitCode::from(u8::try_from(told.exit_code()).unwrap_or(FAILED)))
 }
@@ -49,11 +59,9 @@ pub fn finish(status: ExitCode) -> ExitCode {
     if status == ExitCode::SUCCESS { failed } else { status }
 }
 
-/// Prints a line to standard error; a failure of that cannot be reported. Control characters, which terminals obey and
-/// file names may have, are shown by their codes.
+/// Prints a line to standard error, with hidden characters as their codes; a failure of that cannot be reported.
 pub fn tell_line(text: &str) {
-    let shown = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
-    let _ = writeln!(io::stderr(), "{}", text.chars().map(shown).collect::<String>());
+    let _ = writeln!(io::stderr(), "{}", visible(text));
 }
 
 /// Prints an error as one line and returns its exit status.

@@ -5,10 +5,11 @@ use std::process::ExitCode;
 
 use clap::Args;
 use enmm_io::files::remove_if_there;
-use enmm_report::paper::{Converter, REPORT, REPORT_PDF, Records, write_report};
+use enmm_report::paper::{Converter, PdfError, REPORT, REPORT_PDF, Records, write_report};
 use enmm_run::Folder;
 
-use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line};
+use crate::interrupt::{INTERRUPT, listen};
+use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm report`.
 #[derive(Args)]
@@ -47,7 +48,12 @@ pub fn report(arguments: &Arguments) -> Outcome {
         ));
         return Ok(ExitCode::SUCCESS);
     };
-    program.convert(&page, &pdf).or_fail(FAILED)?;
+    // A browser that is interrupted leaves neither its profile nor half a PDF.
+    listen()?;
+    program.convert(&page, &pdf, &INTERRUPT).map_err(|error| match error {
+        PdfError::Interrupted(_) => Failure::new(error, INTERRUPTED),
+        _ => Failure::new(error, FAILED),
+    })?;
     print_line(&format!("{:<20} {}", "PDF", pdf.display()));
     Ok(ExitCode::SUCCESS)
 }

@@ -1,8 +1,8 @@
 //! `enmm run`: runs a case and reports where the results are.
 
+use enmm::model::case::keys::rounded;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use enmm::model::case::Pictures;
@@ -12,11 +12,9 @@ use enmm_run::summary::OVER;
 use enmm_run::{RunError, RunOptions, RunStatus, Summary};
 
 use crate::case::CaseArguments;
+use crate::interrupt::{INTERRUPT, listen};
 use crate::progress::Screen;
 use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SLOPE_FAILED, fail, print_line, tell_line};
-
-/// Set by the first interrupt.
-pub static INTERRUPT: AtomicBool = AtomicBool::new(false);
 
 /// Arguments of `enmm run`.
 #[derive(Args)]
@@ -52,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     listen()?;
     let options = RunOptions {
-        directory: arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path)),
+        directory: results_folder(arguments.output.as_ref(), directory_of(&arguments.case.path), arguments.force)?,
         resume: arguments.resume.clone(),
         threads: arguments.threads.map(usize::from),
         interrupt: Some(&INTERRUPT),
@@ -77,14 +75,20 @@ pub fn check_folder(directory: &Path, loaded: &LoadedCase, force: bool) -> std::
     if force { Ok(()) } else { enmm_run::check_owner(directory, loaded.source.file()) }
 }
 
-/// From now on the first interrupt requests a checkpoint, and the second ends the program at once.
-pub fn listen() -> Result<(), Failure> {
-    let interrupt = || {
-        if INTERRUPT.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(INTERRUPTED));
+/// The folder for results: the one that the user names, or a default one. A link in the place of that, which may have
+/// come with the case, would lead the results out of this folder.
+pub fn results_folder(named: Option<&PathBuf>, default: PathBuf, force: bool) -> Result<PathBuf, Failure> {
+    if let Some(named) = named {
+        return Ok(named.clone());
+    }
+    match default.ancestors().find(|path| path.is_symlink()).filter(|_| !force) {
+        None => Ok(default),
+        Some(link) => {
+            let (link, default) = (link.display(), default.display());
+            let message = format!("{link}: is a link; to write results through it give -o {default} or --force");
+            Err(Failure::new(message, BAD_INPUT))
         }
-    };
-    ctrlc::set_handler(interrupt).map_err(|error| format!("cannot listen for interrupts ({error})")).or_fail(FAILED)
+    }
 }
 
 /// Prints a record that was written into the folder of the results.
@@ -128,15 +132,23 @@ fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
         },
         (RunStatus::Interrupted, _) => {
             let place = checkpoint.display();
-            fail(&format!("interrupted at t = {:.6} s; continue with --resume {place}", summary.time), INTERRUPTED)
+            fail(
+                &format!("interrupted at t = {} s; continue with --resume {place}", rounded(summary.time)),
+                INTERRUPTED,
+            )
         }
         (RunStatus::Failed, failure) => {
             let cause = failure.as_ref().map_or_else(String::new, |failure| {
                 let [x, y] = failure.place;
-                format!("block {} at ({x:.3}, {y:.3}) m, t = {:.6} s: {}", failure.block, failure.time, failure.cause)
+                format!(
+                    "block {} at ({x:.3}, {y:.3}) m, t = {} s: {}",
+                    failure.block,
+                    rounded(failure.time),
+                    failure.cause
+                )
             });
-            let (time, place) = (summary.time, checkpoint.display());
-            fail(&format!("{cause}; the last good state, t = {time:.6} s, is in {place}"), FAILED)
+            let (time, place) = (rounded(summary.time), checkpoint.display());
+            fail(&format!("{cause}; the last good state, t = {time} s, is in {place}"), FAILED)
         }
     }
 }
@@ -147,11 +159,11 @@ fn table(summary: &Summary, directory: &Path) -> String {
     row("verdict", summary.verdict.clone());
     row("results", directory.display().to_string());
     row("page to open", directory.join(PAGE).display().to_string());
-    row("simulated time", format!("{:.6} s in {} steps", summary.time, summary.steps));
+    row("simulated time", format!("{} s in {} steps", rounded(summary.time), summary.steps));
     for stage in &summary.stages {
         let outcome = stage.outcome();
         let end = if outcome == OVER { String::new() } else { format!(", {outcome}") };
-        row(&format!("stage {}", stage.name), format!("{:.4} s, {} steps{end}", stage.time, stage.steps));
+        row(&format!("stage {}", stage.name), format!("{} s, {} steps{end}", rounded(stage.time), stage.steps));
     }
     let open_close = &summary.open_close;
     row(

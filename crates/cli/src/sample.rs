@@ -16,8 +16,9 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::case::CaseArguments;
 use crate::fos::trial_line;
+use crate::interrupt::{INTERRUPT, listen as listen_for_interrupts};
 use crate::progress::Count;
-use crate::run::{INTERRUPT, check_folder, directory_of, listen as listen_for_interrupts, print_record};
+use crate::run::{check_folder, directory_of, print_record, results_folder};
 use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, listed, print_line, tell_line};
 
 /// Exit status of a panic.
@@ -95,7 +96,7 @@ fn find(arguments: &Arguments) -> Outcome {
     listen_for_interrupts()?;
     let program = std::env::current_exe();
     let program = program.map_err(|error| format!("cannot find this program again ({error})")).or_fail(FAILED)?;
-    let directory = arguments.output.clone().unwrap_or_else(|| directory_of(&arguments.case.path));
+    let directory = results_folder(arguments.output.as_ref(), directory_of(&arguments.case.path), arguments.force)?;
     check_folder(&directory, &loaded, arguments.force).or_fail(BAD_INPUT)?;
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let options = EnsembleOptions {

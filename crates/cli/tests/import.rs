@@ -65,3 +65,30 @@ fn a_drawing_that_cannot_be_read_is_named() {
     place.enmm(&["import", "binary.dxf"]).assert_bad_input(&["binary.dxf: it is a binary DXF"]);
     assert_eq!(place.names(), ["binary.dxf", "case.toml", "section.dxf"]);
 }
+
+/// A name of 65 536 letters was a panic; control characters reached the terminal, and a case that was no TOML.
+#[test]
+fn names_of_layers_are_neither_obeyed_nor_too_long_for_a_table() {
+    let drawing = |name: &str| {
+        let ring: String = [[0, 0], [20, 0], [20, 10], [0, 10]].map(|[x, y]| format!("10\n{x}\n20\n{y}\n")).concat();
+        format!(
+            "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n8\noutline\n90\n4\n70\n1\n{ring}0\nLINE\n8\n{name}\n10\n0\n\
+             20\n5\n11\n20\n21\n5\n0\nENDSEC\n0\nEOF\n"
+        )
+    };
+    let place = Place::with("");
+    let import = |name: &str, case: &str| {
+        fs::write(place.path("map.dxf"), drawing(name)).expect("written");
+        place.enmm(&["import", "map.dxf", "--examples", "-o", case])
+    };
+    import(&"L".repeat(65_536), "long.toml").assert_bad_input(&["LLL", "65536 letters", "at most 255"]);
+    let names = ["\u{1b}]0;taken\u{7}red", "\u{202e}evil\u{ad}", "a\" = 1 [[bolt]] b\\", &"L".repeat(255)];
+    for (k, name) in names.into_iter().enumerate() {
+        let case = format!("{k}.toml");
+        let answer = import(name, &case);
+        assert_eq!(answer.status, Some(0), "{answer:?}");
+        let shown = answer.stdout.trim_end().chars().filter(|c| *c != '\n');
+        assert!(!shown.clone().any(|c| c.is_control() || "\u{202e}\u{ad}".contains(c)), "{answer:?}");
+        place.answers(0, &["check", &case]);
+    }
+}

@@ -98,3 +98,16 @@ fn a_message_names_a_checkpoint_only_when_there_is_one() {
         assert!(answer.status == Some(3) && answer.stderr.contains(remedy), "{answer:?}");
     }
 }
+
+/// With no file to spare for a second look at the lock a run looked again and again, deaf to all signals.
+#[cfg(unix)]
+#[test]
+fn a_lock_that_cannot_be_looked_at_is_an_error() {
+    let place = Place::with(&case(0.01));
+    for files in 4..=8 {
+        let run = format!("ulimit -n {files}; exec timeout 60 {} run case.toml -o out", env!("CARGO_BIN_EXE_enmm"));
+        let mut shell = std::process::Command::new("sh");
+        let ended = shell.args(["-c", &run]).current_dir(place.path(".")).output().expect("sh runs");
+        assert!([Some(0), Some(2), Some(3)].contains(&ended.status.code()), "{files}: {ended:?}");
+    }
+}

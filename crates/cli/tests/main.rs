@@ -10,6 +10,7 @@ mod fmu;
 mod fos;
 mod import;
 mod issue_a_failed_run_read_like_a_nuisance;
+mod issue_a_prepared_folder_led_results_elsewhere;
 mod issue_a_result_replaced_a_record;
 mod issue_an_input_that_is_no_file_was_waited_for;
 mod issue_input_was_believed_whatever_it_held;

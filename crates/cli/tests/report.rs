@@ -97,3 +97,46 @@ fn a_converter_that_does_not_start_is_named() {
     assert!(answer.stderr.contains("no_such_program"), "{answer:?}");
     assert!(place.path("case/report_a4.html").is_file() && !place.path("case/report_a4.pdf").exists());
 }
+
+/// Notes mode and names of its profile, and waits or writes a PDF.
+#[cfg(unix)]
+fn browser(place: &Place, name: &str, end: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let script = format!(
+        "#!/bin/sh\nfor a; do case $a in --user-data-dir=*) stat -c %a \"${{a#*=}}\" > mode;; \
+         --print-to-pdf=*) pdf=${{a#*=}};; esac; done\n{end}\n"
+    );
+    fs::write(place.path(name), script).expect("written");
+    fs::set_permissions(place.path(name), fs::Permissions::from_mode(0o755)).expect("executable");
+    place.path(name).display().to_string()
+}
+
+/// The profile lay at a place that other users could foresee and make, and stayed when the program was killed.
+#[cfg(unix)]
+#[test]
+fn the_profile_of_the_browser_is_private_and_goes_away() {
+    use std::process::Command;
+    let place = Place::with(&incline(0.65, ""));
+    place.answers(0, &["bound", "case.toml"]);
+    fs::create_dir_all(place.path("tmp/enmm_browser.99999999-left")).expect("made");
+    fs::create_dir_all(place.path("tmp/enmm_browser.notes")).expect("made");
+    let report = |converter: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_enmm"));
+        command.args(["report", "case", "--converter", converter]).current_dir(place.path("."));
+        command.env("TMPDIR", place.path("tmp"));
+        command
+    };
+    let printed = report(&browser(&place, "prints", "printf %%PDF- > $pdf")).status().expect("the program runs");
+    assert!(printed.success() && place.path("case/report_a4.pdf").is_file());
+    assert_eq!(fs::read_to_string(place.path("mode")).expect("noted").trim(), "700");
+    assert_eq!(place.names_in("tmp"), ["enmm_browser.notes"], "a folder of another name stays");
+    fs::remove_file(place.path("mode")).expect("removed");
+    let mut waiting = report(&browser(&place, "waits", "exec sleep 100")).spawn().expect("the program runs");
+    while !place.path("mode").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").arg(waiting.id().to_string()).status().expect("kill runs").success());
+    assert_eq!(waiting.wait().expect("an end").code(), Some(130));
+    assert_eq!(place.names_in("tmp"), ["enmm_browser.notes"]);
+    assert!(!place.names_in("case").iter().any(|name| name.ends_with(".tmp")), "{:?}", place.names_in("case"));
+}

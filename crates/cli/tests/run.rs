@@ -193,3 +193,19 @@ fn blocks_that_overlap_are_a_warning_and_numbers_of_the_summary() {
     assert_eq!(warnings.iter().filter(|text| told(text.as_str().expect("text"))).count(), 1, "{warnings:?}");
     assert_eq!(answer.stderr.matches("blocks 0 and 1 overlap by ").count(), 1, "{answer:?}");
 }
+
+/// Batch systems send such signals before they kill.
+#[cfg(unix)]
+#[test]
+fn a_run_answers_a_limit_with_a_checkpoint_or_a_message() {
+    let place = Place::with(&long_rest());
+    stop(&place, "-XCPU", Some(130));
+    assert_eq!(json(&place.path("parts/summary.json"))["status"], "interrupted");
+    assert!(place.path("parts/checkpoint.enmm").is_file());
+    let place = Place::with(&case(0.01));
+    let run = format!("ulimit -f 8; exec {} run case.toml -o out --quiet", env!("CARGO_BIN_EXE_enmm"));
+    let mut shell = Command::new("sh");
+    let full = Outcome::of(shell.args(["-c", &run]).current_dir(place.path(".")).output().expect("sh runs"));
+    assert!([Some(2), Some(3)].contains(&full.status), "{full:?}");
+    assert!(full.stderr.contains("out/") && full.stderr.contains("too large"), "{full:?}");
+}

@@ -108,7 +108,11 @@ fn unmarked(mut text: String) -> String {
 /// # Errors
 /// A message without the file's name: the file cannot be opened, is too large or binary.
 pub fn read_record(path: &Path) -> Result<String, String> {
-    let bytes = read_bytes(path)?;
+    let mut bytes = read_bytes(path)?;
+    let mark = MARK.to_string();
+    if bytes.starts_with(mark.as_bytes()) {
+        bytes.drain(..mark.len());
+    }
     if bytes.contains(&0) {
         return Err("it is binary, and records are read as text; download it as ASCII or save it as CSV".to_string());
     }

@@ -73,6 +73,10 @@ fn names_that_do_harm_are_refused() {
         ("@cmd", "begins with `@`"),
         ("a\\u001b[2J", "control character '\\u{1b}'"),
         ("a\\nb", "control character '\\n'"),
+        ("a\\u00adb", "control character '\\u{ad}'"),
+        ("a\\u2028b", "control character '\\u{2028}'"),
+        ("a\\U000E0041b", "control character '\\u{e0041}'"),
+        (&"a".repeat(256), "has 256 letters, must have at most 255"),
     ] {
         let message = refused(monitor(name));
         assert!(message.contains("monitor[") && message.contains(told), "{message}");

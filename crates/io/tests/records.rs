@@ -463,3 +463,18 @@ fn files_without_a_record_are_refused_with_their_line() {
     let loaded = base("r.csv", "\u{feff}sep=;\nt;a\n0;0\n0.1;2\n0.2;0\n", "").expect("read");
     assert_eq!(rows(&loaded), [[0.0, 0.0], [0.1, 2.0], [0.2, 0.0]]);
 }
+
+/// A first row with a slip was taken for a heading, and left out without a word.
+#[test]
+fn a_first_row_with_a_slip_is_no_heading() {
+    let rows = "0.02, 5\n0.04, 5\n";
+    let keys = "axis = \"x\"\nkind = \"acceleration\"\nstage = \"quake\"";
+    for first in ["O, 5", "0.0o, 5", "t0 1e3"] {
+        let told = refused(base("r.csv", format!("{first}\n{rows}"), keys));
+        assert!(told.contains("r.csv:1") && told.contains("heading with `#`"), "{first}: {told}");
+    }
+    let marked = base("r.csv", format!("\u{feff}0, 5\n{rows}"), keys).expect("a record");
+    assert_eq!(self::rows(&marked), [[0.0, 5.0], [0.02, 5.0], [0.04, 5.0]]);
+    let headed = base("r.csv", format!("Zeit;Wert\n{rows}"), keys).expect("a record");
+    assert!(line(&headed.case).contains("line 1 is taken for a heading"), "{}", line(&headed.case));
+}

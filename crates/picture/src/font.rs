@@ -2,14 +2,39 @@
 
 use std::sync::LazyLock;
 
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::GlyphMetrics;
+use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
+use skrifa::raw::TableProvider;
+use skrifa::raw::tables::kern::{Subtable0, SubtableKind};
+use skrifa::{FontRef, GlyphId, MetadataProvider, charmap::Charmap};
 use tiny_skia::PathBuilder;
-use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 /// Units of the font in its size.
 pub const UNITS: f32 = 2048.0;
 
-static FONT: LazyLock<Face> =
-    LazyLock::new(|| Face::parse(dejavu::sans::regular(), 0).expect("the embedded font is whole"));
+/// The tables of the embedded font that are used.
+struct Font {
+    letters: Charmap<'static>,
+    outlines: OutlineGlyphCollection<'static>,
+    metrics: GlyphMetrics<'static>,
+    pairs: Vec<Subtable0<'static>>,
+}
+
+static FONT: LazyLock<Font> = LazyLock::new(|| {
+    let font = FontRef::new(dejavu::sans::regular()).expect("the embedded font is whole");
+    let pairs = font.kern().into_iter().flat_map(|kern| kern.subtables()).flatten();
+    let pairs = pairs.filter_map(|table| match table.kind() {
+        Ok(SubtableKind::Format0(pairs)) => Some(pairs),
+        _ => None,
+    });
+    Font {
+        letters: font.charmap(),
+        outlines: font.outline_glyphs(),
+        metrics: font.glyph_metrics(Size::unscaled(), LocationRef::default()),
+        pairs: pairs.collect(),
+    }
+});
 
 /// A line of text in units of the font: base line at 0, y up.
 #[derive(Debug)]
@@ -26,10 +51,13 @@ pub fn line(text: &str) -> Line {
     let mut last = None;
     for letter in text.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ").chars() {
         // The first glyph is an empty box, for letters that the font lacks.
-        let glyph = FONT.glyph_index(letter).unwrap_or_default();
+        let glyph = FONT.letters.map(letter).unwrap_or_default();
         pen.x += last.map_or(0.0, |last| kerning(last, glyph));
-        FONT.outline_glyph(glyph, &mut pen);
-        pen.x += f32::from(FONT.glyph_hor_advance(glyph).unwrap_or_default());
+        if let Some(outline) = FONT.outlines.get(glyph) {
+            let unhinted = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+            outline.draw(unhinted, &mut pen).expect("the embedded font is whole");
+        }
+        pen.x += FONT.metrics.advance_width(glyph).unwrap_or_default();
         last = Some(glyph);
     }
     Line { outline: pen.outline, width: pen.x }
@@ -37,8 +65,7 @@ pub fn line(text: &str) -> Line {
 
 /// How much farther from the first glyph the second stands.
 fn kerning(first: GlyphId, second: GlyphId) -> f32 {
-    let tables = FONT.tables().kern.iter().flat_map(|kern| kern.subtables);
-    tables.filter_map(|table| table.glyphs_kerning(first, second)).map(f32::from).sum()
+    FONT.pairs.iter().filter_map(|pairs| pairs.kerning(first, second)).map(|units| units as f32).sum()
 }
 
 /// Draws the next glyph at `x`.
@@ -47,7 +74,7 @@ struct Pen {
     x: f32,
 }
 
-impl OutlineBuilder for Pen {
+impl OutlinePen for Pen {
     fn move_to(&mut self, x: f32, y: f32) {
         self.outline.move_to(self.x + x, y);
     }
@@ -76,7 +103,8 @@ mod tests {
     #[test]
     fn letters_have_the_widths_of_the_font_and_pairs_stand_closer() {
         let width = |text| line(text).width;
-        assert_eq!(f32::from(FONT.units_per_em()), UNITS);
+        let font = FontRef::new(dejavu::sans::regular()).expect("a font");
+        assert_eq!(f32::from(font.head().expect("a head").units_per_em()), UNITS);
         assert_eq!([width("A"), width("i"), width("σ"), width("²")], [1401.0, 569.0, 1298.0, 821.0]);
         assert!(width("AV") < width("A") + width("V"));
         assert_eq!(width("  a   b "), width("a b"));

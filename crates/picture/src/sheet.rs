@@ -326,9 +326,13 @@ const ADVANCES: [u16; 95] = [
     337, 636, 838,
 ];
 
-/// Width (px) of a text of the given size (px); letters beyond ASCII count as wide ones.
+/// Advance of a letter in sizes of the font; one beyond ASCII counts as a wide one.
+fn advance(letter: char) -> f64 {
+    ADVANCES.get((letter as usize).wrapping_sub(32)).map_or(0.84, |advance| f64::from(*advance) / 1e3)
+}
+
+/// Width (px) of a text of the given size (px).
 pub fn text_width(text: &str, size: f64) -> f64 {
-    let advance = |letter: char| ADVANCES.get((letter as usize).wrapping_sub(32)).map_or(0.84, |a| f64::from(*a) / 1e3);
     text.chars().map(advance).sum::<f64>() * size
 }
 
@@ -337,12 +341,12 @@ pub fn fitted(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();
     }
-    let mut cut = text.to_owned();
-    while !cut.is_empty() && text_width(&cut, size) + size > width {
-        cut.pop();
-    }
-    cut.push('…');
-    cut
+    let mut sum = 0.0;
+    let fits = |letter: &char| {
+        sum += advance(*letter);
+        sum * size + size <= width
+    };
+    text.chars().take_while(fits).chain(['…']).collect()
 }
 
 /// The words of a text in lines of at most `width` px at the given size (px); longer words are cut.

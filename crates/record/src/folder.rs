@@ -4,12 +4,14 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use enmm_io::files::{at_path, is_temporary, sweep_temporaries};
+use enmm_io::files::{at_path, is_running, read_result, unfinished_name};
 use same_file::Handle;
 use serde_json::Value;
 
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
+/// Most attempts to take it.
+const TURNS: usize = 100;
 /// Name of the store of samples, unless another is given.
 pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
@@ -83,8 +85,7 @@ impl Folder {
         check_lock(&path.join(LOCK), &inputs)?;
         folder.lock = Some(Lock::take(path)?);
         check(path, &inputs)?;
-        sweep_temporaries(path)?;
-        sweep_temporaries(&path.join(FRAMES))?;
+        sweep(path)?;
         Ok(folder)
     }
 }
@@ -98,6 +99,24 @@ impl Drop for Folder {
             let _ = fs::remove_dir(made);
         }
     }
+}
+
+/// Removes results that killed processes have left unfinished.
+fn sweep(folder: &Path) -> io::Result<()> {
+    for name in names(folder)? {
+        // Where the system lists its processes, one that still writes is left alone.
+        if unfinished_result(&name).is_some_and(|process| !is_running(process)) {
+            let path = folder.join(name);
+            fs::remove_file(&path).map_err(at_path(&path))?;
+        }
+    }
+    Ok(())
+}
+
+/// The process that has begun a result, of a path in a folder of results that is the name of an unfinished one.
+fn unfinished_result(path: &Path) -> Option<u32> {
+    let (name, process) = unfinished_name(path.file_name()?.to_str()?)?;
+    is_result(&path.with_file_name(name)).then_some(process)
 }
 
 /// Makes the folder of frames in a folder of results, unless it is there.
@@ -120,7 +139,7 @@ fn missing_folders(path: &Path) -> Vec<&Path> {
 impl Lock {
     fn take(folder: &Path) -> io::Result<Self> {
         let path = folder.join(LOCK);
-        loop {
+        for _ in 0..TURNS {
             let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = opened.map_err(at_path(&path))?;
             match file.try_lock() {
@@ -130,13 +149,14 @@ impl Lock {
                 Ok(()) => {}
             }
             // The process that held it may have removed it between the two calls above.
-            if Handle::from_path(&path).is_ok_and(|there| file.try_clone().is_ok_and(|own| is_same(own, &there))) {
+            if is_at(&file, &path).map_err(at_path(&path))? {
                 let written = file.set_len(0).and_then(|()| write!(file, "{}", std::process::id()));
                 let lock = Self { path, _file: file };
                 written.map_err(at_path(&lock.path))?;
                 return Ok(lock);
             }
         }
+        Err(taken(&path, "is another file at each look: choose a directory of another file system"))
     }
 }
 
@@ -147,8 +167,12 @@ impl Drop for Lock {
     }
 }
 
-fn is_same(file: File, there: &Handle) -> bool {
-    Handle::from_file(file).is_ok_and(|own| own == *there)
+/// Whether a path leads to a file; one that is gone does not.
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    match Handle::from_path(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        there => Ok(Handle::from_file(file.try_clone()?)? == there?),
+    }
 }
 
 fn held(folder: &Path, lock: &mut File) -> io::Error {
@@ -161,6 +185,8 @@ fn held(folder: &Path, lock: &mut File) -> io::Error {
 
 /// Files of results that name their case.
 const RECORDS: [&str; 4] = ["bound.json", "ensemble.json", "fos.json", "summary.json"];
+/// Largest of them that is read (bytes).
+const RECORD_MAX: u64 = 256 << 20;
 
 /// Refuses a folder that holds results of another case than the one of a file.
 ///
@@ -181,10 +207,9 @@ pub fn check_owner(folder: &Path, case_file: &str) -> io::Result<()> {
     }
 }
 
-/// The case file that a record names; what is no regular file is not waited for.
+/// The case file that a record names.
 fn owner(record: &Path) -> Option<String> {
-    record.metadata().ok().filter(fs::Metadata::is_file)?;
-    let record: Value = serde_json::from_slice(&fs::read(record).ok()?).ok()?;
+    let record: Value = serde_json::from_slice(&read_result(record, RECORD_MAX).ok()?).ok()?;
     Some(record["case_file"].as_str()?.to_owned())
 }
 
@@ -232,10 +257,13 @@ fn has_other_names(_: &fs::Metadata) -> bool {
 /// Looks at all that has the name of a result, or of one that is not finished, which is removed.
 fn check(folder: &Path, inputs: &[(&Path, Handle)]) -> io::Result<()> {
     let frames = folder.join(FRAMES);
-    if frames.exists() && !frames.is_dir() {
-        return Err(taken(&frames, "is no directory, but frames go into one of this name"));
+    if frames.is_symlink() || frames.exists() && !frames.is_dir() {
+        return Err(taken(
+            &frames,
+            "is no directory, or a link to one, but frames go into a directory of this name, and old ones leave it",
+        ));
     }
-    let goes = |name: &PathBuf| is_result(name) || name.file_name().and_then(|n| n.to_str()).is_some_and(is_temporary);
+    let goes = |name: &PathBuf| is_result(name) || unfinished_result(name).is_some();
     let results = names(folder)?.into_iter().filter(goes);
     results.map(|name| folder.join(name)).try_for_each(|path| check_against(&path, inputs))
 }

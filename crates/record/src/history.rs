@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use enmm_io::files::{at_path, write_atomic};
+use enmm_io::files::{at_path, open_result, write_atomic};
 
 /// Writes one row after another; every row is in the file before [`HistoryWriter::row`] returns.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl HistoryWriter {
     }
 
     fn shorten(path: &Path, header: Vec<String>, keep_until_time: f64) -> io::Result<Self> {
-        let text = match fs::read_to_string(path) {
+        let text = match open_result(path).and_then(io::read_to_string) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Self::begin(path, header),
             read => read.map_err(at_path(path))?,
         };

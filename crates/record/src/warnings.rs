@@ -1,5 +1,6 @@
 //! Warnings of a run that need its results alone.
 
+use enmm::model::case::keys::{Plain, rounded};
 use std::io;
 
 use enmm::model::case::{Integrator, StageKind};
@@ -38,9 +39,11 @@ impl Recorder {
         let (name, duration) = (&stage.name, stage.duration);
         let time = simulation.time() - simulation.state().stage_start;
         let text = format!(
-            "stage {name:?} ended early, after {time:.4} s of at most {duration} s: rock has moved by more than \
-             {limit} m and becomes no slower, so that it will not come to rest; raise solver.failure_displacement to \
-             follow it farther"
+            "stage {name:?} ended early, after {} s of at most {} s: rock has moved by more than {} m and becomes no \
+             slower, so that it will not come to rest; raise solver.failure_displacement to follow it farther",
+            rounded(time),
+            Plain(duration),
+            Plain(limit)
         );
         self.warn(simulation, text)
     }
@@ -61,8 +64,9 @@ impl Recorder {
         if stage.kind == StageKind::Static && !converged {
             let (time, ratio) = (stage.duration, self.progress.reports.unbalanced);
             let text = format!(
-                "stage {name:?} did not come to rest within its duration of {time} s (unbalanced ratio {ratio:.2e}); \
+                "stage {name:?} did not come to rest within its duration of {} s (unbalanced ratio {ratio:.2e}); \
                  fastest: {}",
+                Plain(time),
                 named(&simulation.moving())
             );
             self.warn(simulation, text)?;
@@ -124,12 +128,12 @@ impl Recorder {
 fn overlap_text(simulation: &Simulation, event: &Event) -> String {
     let place = simulation.motion_of(BlockId::new(event.subject as usize)).centroid;
     format!(
-        "{} near ({:.3}, {:.3}) m at t = {:.4} s: results about them are wrong from here on; where their joint is \
+        "{} near ({:.3}, {:.3}) m at t = {} s: results about them are wrong from here on; where their joint is \
          soft, raise its normal_stiffness",
         event.overlap_text(simulation.model().covers.mesh.size),
         place.x,
         place.y,
-        event.time
+        rounded(event.time)
     )
 }
 

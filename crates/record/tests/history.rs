@@ -101,6 +101,7 @@ fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
     write_atomic(&path, b"second").unwrap();
     assert_eq!(text(&path), "second");
     assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    write_atomic(&directory.path().join("a".repeat(255)), b"a name as long as may be").unwrap();
     write_atomic(&directory.path().join("missing/summary.json"), b"bytes").unwrap_err();
     assert!(!directory.path().join("missing").exists(), "a folder that was removed does not come back");
 }

@@ -3,9 +3,7 @@
 //! A chunk is its kind (4 letters), the length of its body (u32), its time (f64) and its body, a zlib stream; numbers
 //! are little-endian. A program that is killed leaves at most its last chunk torn, and readers leave that one out.
 
-use std::fs::{self, File};
 use std::io::{self, Read};
-use std::path::Path;
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib;
@@ -13,17 +11,6 @@ use miniz_oxide::inflate::decompress_to_vec_zlib;
 /// First bytes of a film; the last of them counts the versions of the format.
 pub const MAGIC: [u8; 8] = *b"enmmfil4";
 
-/// Opens the file of a film. A pipe, a socket or a device is not opened at all, so that nothing waits for its other
-/// end.
-///
-/// # Errors
-/// It is something else, or what the file system refuses.
-pub fn open(path: &Path) -> io::Result<File> {
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
-    }
-    File::open(path)
-}
 /// Bytes before the body of a chunk.
 pub const HEADER: usize = 16;
 /// Effort of the compression, 0 to 10: more costs time and gains little on the noise of mantissas.

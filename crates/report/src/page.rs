@@ -1,15 +1,14 @@
 //! `report.html`: the viewer with a film in it, or without one for a film that is served.
 
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::Path;
 
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
+use enmm_io::files::{Unfinished, open_result};
 
-use crate::chunk::{self, Chunks, MAGIC};
+use crate::chunk::{Chunks, MAGIC};
 use crate::error::FilmError;
-use crate::writer::{forget, temporary_beside};
 
 const EDITOR: &str = include_str!("../viewer/editor.html");
 const PAGE: &str = include_str!("../viewer/viewer.html");
@@ -34,21 +33,13 @@ const HOLES: [&str; 3] = ["/*style*/", "/*script*/", "<!--film-->"];
 /// # Errors
 /// A file that is no film, or what the file system refuses.
 pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
-    let temporary = temporary_beside(page);
-    let written = fill(film, &temporary);
-    written
-        .and_then(|()| std::fs::rename(&temporary, page).map_err(FilmError::at(page)))
-        .inspect_err(|_| forget(&temporary))
-}
-
-/// Writes the page of a film into a file.
-fn fill(film: &Path, temporary: &Path) -> Result<(), FilmError> {
     let no_film = |error: io::Error| FilmError::NoFilm { path: film.to_owned(), problem: error.to_string() };
-    let mut chunks = chunk::open(film)
+    let mut chunks = open_result(film)
         .map_err(FilmError::at(film))
         .and_then(|file| Chunks::new(BufReader::new(file)).map_err(no_film))?;
-    let at = FilmError::at(temporary);
-    let mut out = BufWriter::new(File::create(temporary).map_err(&at)?);
+    let at = FilmError::at(page);
+    let (unfinished, file) = Unfinished::beside(page).map_err(&at)?;
+    let mut out = BufWriter::new(file);
     let [before, after] = halves();
     out.write_all(before.as_bytes()).map_err(&at)?;
     out.write_all(b"<script type=\"application/octet-stream;base64\" id=\"film\">").map_err(&at)?;
@@ -61,7 +52,8 @@ fn fill(film: &Path, temporary: &Path) -> Result<(), FilmError> {
     drop(text);
     out.write_all(b"</script>").map_err(&at)?;
     out.write_all(after.as_bytes()).map_err(&at)?;
-    out.into_inner().map(drop).map_err(|error| at(error.into_error()))
+    out.into_inner().map_err(|error| at(error.into_error()))?;
+    unfinished.finish().map_err(&at)
 }
 
 /// The page without a film, which requests one from its server.

@@ -11,7 +11,9 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::chunk::{self, MAGIC};
+use enmm_io::files::open_result;
+
+use crate::chunk::MAGIC;
 use crate::page::live_page;
 
 /// Bytes of a request that are read; ours are much shorter.
@@ -168,7 +170,7 @@ impl FilmSource {
     fn film_from(&self, from: u64) -> Result<Piece, &'static str> {
         const NO_FILM: &str = "403 Forbidden";
         const BEHIND: &str = "416 Range Not Satisfiable";
-        let mut file = match chunk::open(&self.film) {
+        let mut file = match open_result(&self.film) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return if from == 0 { Ok(Piece::default()) } else { Err(BEHIND) };
             }
@@ -292,7 +294,8 @@ impl Request {
 fn send(out: &mut impl Write, kind: &str, length: u64, body: &mut dyn Read) -> io::Result<()> {
     let head = format!(
         "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nCache-Control: no-store\r\n\
-         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n"
+         X-Content-Type-Options: nosniff\r\nContent-Security-Policy: frame-ancestors 'self'\r\n\
+         Connection: close\r\n\r\n"
     );
     out.write_all(head.as_bytes())?;
     io::copy(body, out).map(drop)

@@ -4,6 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use enmm_io::files::{Unfinished, open_result, remove_if_there};
+
 use crate::block::{self, Shape};
 use crate::chunk::{self, Chunk, Chunks, Kind, MAGIC};
 use crate::data::{Frame, Head, Note, Outline};
@@ -47,11 +49,8 @@ impl FilmWriter {
     pub fn create(path: &Path, head: &Head, outlines: &[Outline]) -> Result<Self, FilmError> {
         let (bytes, shape) = checked(head, outlines)?;
         // A link of that name is replaced and not followed.
-        match std::fs::remove_file(path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(FilmError::at(path)(error)),
-            _ => {}
-        }
-        let mut file = File::create_new(path).map_err(FilmError::at(path))?;
+        let made = remove_if_there(path).and_then(|()| File::create_new(path));
+        let mut file = made.map_err(FilmError::at(path))?;
         file.write_all(&MAGIC).map_err(FilmError::at(path))?;
         let mut film = Self::of(path, file, shape, head);
         film.append(Kind::Head, 0.0, &json(head, path)?)?;
@@ -208,49 +207,39 @@ fn json(value: &impl serde::Serialize, path: &Path) -> Result<Vec<u8>, FilmError
     serde_json::to_vec(value).map_err(io::Error::from).map_err(FilmError::at(path))
 }
 
-/// A name for a file that is not whole yet: runs sweep such names of programs that were killed.
-pub fn temporary_beside(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".{name}.{}-0.tmp", std::process::id()))
-}
-
-/// Removes a file that is not finished; one that cannot be removed is left for the next run to sweep.
-pub fn forget(temporary: &Path) {
-    let _ = std::fs::remove_file(temporary);
-}
-
 /// Takes frames, rows and notes later than a time (s) out of a film; returns its file, and the stage of its last frame.
 fn shorten(path: &Path, until: f64) -> Result<(File, Option<u32>), FilmError> {
-    let shortened = temporary_beside(path);
-    let stage = keep(path, &shortened, until).inspect_err(|_| forget(&shortened))?;
-    std::fs::rename(&shortened, path).map_err(FilmError::at(path))?;
+    let (shortened, file) = Unfinished::beside(path).map_err(FilmError::at(path))?;
+    let stage = keep(path, file, until)?;
+    shortened.finish().map_err(FilmError::at(path))?;
     let file = OpenOptions::new().append(true).open(path).map_err(FilmError::at(path))?;
     Ok((file, stage))
 }
 
 /// Copies the chunks of a film up to a time (s); returns the stage of its last frame.
-fn keep(from: &Path, to: &Path, until: f64) -> Result<Option<u32>, FilmError> {
+fn keep(from: &Path, file: File, until: f64) -> Result<Option<u32>, FilmError> {
     let no_film = |error: io::Error| FilmError::NoFilm { path: from.to_owned(), problem: error.to_string() };
-    let film = chunk::open(from).map_err(FilmError::at(from))?;
+    let unwritten = FilmError::at(from);
+    let film = open_result(from).map_err(FilmError::at(from))?;
     let mut chunks = Chunks::new(BufReader::new(film)).map_err(no_film)?;
-    let mut kept = BufWriter::new(File::create(to).map_err(FilmError::at(to))?);
-    kept.write_all(&MAGIC).map_err(FilmError::at(to))?;
+    let mut kept = BufWriter::new(file);
+    kept.write_all(&MAGIC).map_err(&unwritten)?;
     let mut last: Option<Chunk> = None;
     while let Some(chunk) = chunks.next().map_err(no_film)? {
         let begins = matches!(chunk.kind, Kind::Head | Kind::Outlines);
         if begins || chunk.time <= until {
-            kept.write_all(&chunk.bytes).map_err(FilmError::at(to))?;
+            kept.write_all(&chunk.bytes).map_err(&unwritten)?;
             if chunk.kind == Kind::Frame {
                 last = Some(chunk);
             }
         } else if chunk.kind == Kind::Rows {
             let body = chunk.body().map_err(no_film)?;
             let Some((time, rows)) = rows_until(&body, until) else { continue };
-            let bytes = chunk::pack(Kind::Rows, time, &rows).map_err(FilmError::at(to))?;
-            kept.write_all(&bytes).map_err(FilmError::at(to))?;
+            let bytes = chunk::pack(Kind::Rows, time, &rows).map_err(&unwritten)?;
+            kept.write_all(&bytes).map_err(&unwritten)?;
         }
     }
-    kept.flush().map_err(FilmError::at(to))?;
+    kept.flush().map_err(&unwritten)?;
     let body = last.map(|frame| frame.body()).transpose().map_err(no_film)?;
     Ok(body.and_then(|body| body.first_chunk().copied()).map(u32::from_le_bytes))
 }

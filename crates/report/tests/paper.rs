@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use enmm_report::paper::{Converter, REPORT, Records, RecordsError, report_html, write_report};
 use serde_json::{Value, json};
@@ -104,7 +105,7 @@ fn names_are_text_and_the_words_of_the_method_are_not_used() {
         assert!(!words.iter().any(|own| own == word), "{word}");
     }
     assert!(!words.windows(2).any(|pair| pair[0] == "level" && pair[1] == "tops"));
-    assert!(!html.contains("<script") && !html.contains("http"), "no program and no network");
+    assert!(!html.contains("<script") && !html.replace("http-equiv", "").contains("http"), "no program and no network");
 }
 
 #[test]
@@ -124,6 +125,33 @@ fn results_of_different_cases_are_told_apart() {
     run["status"] = json!("finished");
     let folder = folder_with(&[("summary.json", &run), ("fos.json", &fos())]);
     assert!(html(folder.path()).contains("another version of the case (fingerprint 0123456789abcdef)"));
+}
+
+/// A report goes to others: a link in a folder of a stranger put any file of the reader into it.
+#[cfg(unix)]
+#[test]
+fn a_report_reads_no_links_pipes_devices_or_other_files_as_pictures() {
+    let folder = folder_with(&[("fos/fos.json", &fos())]);
+    let place = |name: &str| folder.path().join(name);
+    fs::write(place("secret"), "<svg >SECRET</svg>").expect("written");
+    let pipe = || std::process::Command::new("mkfifo").arg(place("fos/fos.svg")).status().expect("mkfifo runs");
+    std::os::unix::fs::symlink("../secret", place("fos/failure.svg")).expect("linked");
+    assert!(pipe().success());
+    let shown = html(folder.path());
+    for told in ["failure.svg is left out: it is a link", "fos.svg is left out: it is a directory, a pipe or a device"]
+    {
+        assert!(shown.contains(told), "{told}");
+    }
+    fs::remove_file(place("fos/failure.svg")).expect("removed");
+    fs::write(place("fos/failure.svg"), "root:x:0:0").expect("written");
+    let shown = html(folder.path());
+    assert!(shown.contains("failure.svg is left out: it is no picture") && !shown.contains("base64"));
+    fs::rename(place("fos"), place("elsewhere")).expect("renamed");
+    std::os::unix::fs::symlink("elsewhere", place("fos")).expect("linked");
+    assert!(matches!(Records::read(folder.path()), Err(RecordsError::Link(_))));
+    fs::remove_file(place("fos")).expect("removed");
+    std::os::unix::fs::symlink("elsewhere/fos.json", place("fos.json")).expect("linked");
+    assert!(matches!(Records::read(folder.path()), Err(RecordsError::Unreadable { .. })));
 }
 
 #[test]
@@ -162,7 +190,10 @@ fn a_converter_that_fails_leaves_nothing() {
     let before = fs::read_dir(folder.path()).expect("a folder").count();
     for program in ["/bin/true", "/bin/false", "/does/not/exist"] {
         let pdf = folder.path().join("out.pdf");
-        let error = Converter::named(Path::new(program)).convert(&page, &pdf).expect_err("no PDF").to_string();
+        let error = Converter::named(Path::new(program))
+            .convert(&page, &pdf, &AtomicBool::new(false))
+            .expect_err("no PDF")
+            .to_string();
         assert!(error.contains(program), "{error}");
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), before);
     }

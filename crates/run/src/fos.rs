@@ -2,6 +2,7 @@
 //!
 //! Nothing is written before the first trial has ended. Prints nothing: a closure hears of each trial.
 
+use enmm::model::case::keys::Plain;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -79,16 +80,21 @@ impl FosOptions<'_> {
         for (name, value) in [("--low", self.low), ("--high", self.high)] {
             if let Some(value) = value.filter(|value| !(least..=most).contains(value)) {
                 return Err(format!(
-                    "{name}: is {value}, must be from {least} to {most}; 0.5 and 3 bracket most slopes"
+                    "{name}: is {}, must be from {least} to {most}; 0.5 and 3 bracket most slopes",
+                    Plain(value)
                 ));
             }
         }
         let (low, high) = (self.low.unwrap_or(least), self.high.unwrap_or(most));
         if low > high {
-            return Err(format!("--low: is {low}, must not be above --high, {high}; swap or leave out one of them"));
+            return Err(format!(
+                "--low: is {}, must not be above --high, {}; swap or leave out one of them",
+                Plain(low),
+                Plain(high)
+            ));
         }
         if !(1e-4..=0.5).contains(&self.tolerance) {
-            return Err(format!("--tolerance: is {}, must be from 1e-4 to 0.5; 0.005 is usual", self.tolerance));
+            return Err(format!("--tolerance: is {}, must be from 1e-4 to 0.5; 0.005 is usual", Plain(self.tolerance)));
         }
         if let Some(area) = self.mechanisms.least_area.filter(|area| !(*area >= 0.0 && area.is_finite())) {
             return Err(format!(

@@ -1,6 +1,5 @@
 //! The pages of `enmm fos` and `enmm bound`: the slope as it fails, tables, and the failing mass marked.
 
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -10,7 +9,7 @@ use crate::found::{Found, remedy};
 use enmm::geometry::Vector;
 use enmm::model::Simulation;
 use enmm_io::LoadedCase;
-use enmm_io::files::temporary_beside;
+use enmm_io::files::Unfinished;
 use enmm_record::film::{Film, Opening, numbers};
 use enmm_stability::limit_analysis::continuum::{Bracket, Motion};
 use enmm_stability::limit_analysis::{self, Bound, Way};
@@ -27,8 +26,9 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
     let main = found.main();
     let simulation = &main.simulation;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
-    let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "fos", film: path.clone(), axis, numbers: numbers(), columns: &[] };
+    let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
+    let opening =
+        Opening { command: "fos", film: unfinished.path().to_owned(), axis, numbers: numbers(), columns: &[] };
     let mut film = Film::open(directory, loaded, simulation, opening, None)?;
     film.rigid_frame(simulation, 0.0, |_| (Vector::zeros(), 0.0))?;
     film.frame_at(simulation, 1.0)?;
@@ -47,7 +47,7 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
     let rows = [("0", "before gravity acts".to_owned()), ("1", end)];
     film.note(0.0, &facts("What the slider shows", rows.map(|(name, value)| (name.to_owned(), value))))?;
     film.note_changes(simulation)?;
-    close(film, &path)
+    film.close(1.0, "finished".to_owned())
 }
 
 /// Writes the page of a limit analysis.
@@ -57,8 +57,9 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
 pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) -> io::Result<()> {
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
-    let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: MOTION.to_vec(), columns: &[] };
+    let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
+    let opening =
+        Opening { command: "bound", film: unfinished.path().to_owned(), axis, numbers: MOTION.to_vec(), columns: &[] };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     let moving = &bound.level_tops.mechanism;
     let reach = SHOWN * greater_side(&simulation);
@@ -82,7 +83,7 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     film.note(0.0, &facts("What the slider shows", shown.map(|(name, value)| (name.to_owned(), value))))?;
     note_warnings(&mut film, bound.warnings.iter())?;
     film.note_changes(&simulation)?;
-    close(film, &path)
+    film.close(1.0, "finished".to_owned())
 }
 
 /// Writes the page of a limit analysis of rock that yields.
@@ -93,8 +94,9 @@ pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Brack
     let staged = limit_analysis::staged_rock(&loaded.case);
     let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
-    let path = temporary_beside(&directory.join(FILM))?;
-    let opening = Opening { command: "bound", film: path.clone(), axis, numbers: MOTION.to_vec(), columns: &[] };
+    let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
+    let opening =
+        Opening { command: "bound", film: unfinished.path().to_owned(), axis, numbers: MOTION.to_vec(), columns: &[] };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     film.frame_at(&simulation, 0.0)?;
     let reach = SHOWN * greater_side(&simulation);
@@ -110,7 +112,7 @@ pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Brack
     film.note(0.0, &facts("What the slider shows", shown.map(text)))?;
     note_warnings(&mut film, bracket.warnings.iter())?;
     film.note_changes(&simulation)?;
-    close(film, &path)
+    film.close(1.0, "finished".to_owned())
 }
 
 /// Moves every cover as the triangle of its block that lies nearest to it, by `reach` (m) where that is fastest.
@@ -127,12 +129,6 @@ fn move_by(simulation: &mut Simulation, bracket: &Bracket, reach: f64) {
         }
     }
     simulation.restore(state);
-}
-
-/// Ends the film, writes its page and removes the film, which the page holds.
-fn close(mut film: Film, path: &Path) -> io::Result<()> {
-    film.close(1.0, "finished".to_owned())?;
-    fs::remove_file(path)
 }
 
 fn note_warnings<'a>(film: &mut Film, warnings: impl Iterator<Item = &'a String>) -> io::Result<()> {

@@ -24,7 +24,9 @@ pub fn page(model: &Cosimulation, table: &Table, facts: &Facts) -> String {
     let title = text(&facts.title);
     let number = if table.version == Version::Two { "2.0" } else { "3.0" };
     let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; \
+         img-src 'self' file:\">\n<title>{title}</title>\n\
          <style>\n{STYLE}\n</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
          <p>{}. FMI {number} co-simulation, packed by {}; no file outside this FMU is needed.</p>\n\
          <p><img src=\"{PICTURE}\" alt=\"The slope before it moves\"><br>\n\

@@ -3,6 +3,7 @@
 use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
 use enmm::cosimulation::{PORT_QUANTITIES, Parameter, PortKind, TOTALS, parameters};
 use enmm::model::case::Port;
+use enmm::model::case::keys::Plain;
 use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, MONITOR_QUANTITIES};
 use uuid::Uuid;
 
@@ -184,7 +185,10 @@ impl Variable {
         }
         match limits {
             Some((low, high)) if !(*low..=*high).contains(&value) => Err(format!(
-                "{name}: is {value}, must be at least {low} and at most {high} {unit}; the old value still holds"
+                "{name}: is {}, must be at least {} and at most {} {unit}; the old value still holds",
+                Plain(value),
+                Plain(*low),
+                Plain(*high)
             )),
             _ => Ok(()),
         }

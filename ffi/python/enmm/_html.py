@@ -2,14 +2,22 @@
 
 import base64
 import html
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ._errors import invalid
 from ._kinds import is_dict, is_list
 
 _ROWS = 10
 """Rows of a table that are shown."""
+
+_PICTURE = 64 << 20
+"""Largest picture that is shown (bytes)."""
+
+_PAGE = 1 << 30
+"""Largest page that is shown (bytes)."""
 
 
 class Record(dict[str, Any]):
@@ -72,9 +80,19 @@ def columns(heads: Sequence[str], values: Mapping[str, Any], rows: int) -> str:
 
 def picture(path: Path, words: str) -> str:
     """A picture of the program in the page; nothing where it was not drawn."""
-    if not path.is_file():
-        return ""
-    return png(path.read_bytes(), words)
+    data = _read(path, _PICTURE)
+    return png(data, words) if data.startswith(b"\x89PNG") else ""
+
+
+def _read(path: Path, most: int) -> bytes:
+    """A file of a folder of results; empty where it is longer than `most`, no file, or a link, which could lead to any
+    file of the reader."""
+    if path.is_symlink() or not path.is_file():
+        return b""
+    # What comes to the place between this look and the opening is neither followed nor waited for.
+    flags = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+    with open(path, "rb", opener=lambda name, mode: os.open(name, mode | flags)) as file:
+        return file.read() if os.fstat(file.fileno()).st_size <= most else b""
 
 
 def png(data: bytes, words: str) -> str:
@@ -84,7 +102,11 @@ def png(data: bytes, words: str) -> str:
 
 
 def frame(page: Path, height: int) -> str:
-    """A page of results in a frame, which needs no file beside it."""
-    source = html.escape(page.read_text(encoding="utf-8"), quote=True)
+    """A page of results in a frame, which needs no file beside it. Its scripts cannot reach the notebook: the page may
+    come from a stranger."""
+    source = html.escape(_read(page, _PAGE).decode(), quote=True)
+    if not source:
+        raise invalid(f"{page}: is no regular file of at most {_PAGE} bytes, so it is not shown: open it in a browser")
     style = f"width:100%;height:{height}px;border:0"
-    return f'<div><iframe title="Results of enmm" style="{style}" srcdoc="{source}"></iframe></div>'
+    rights = "allow-scripts allow-downloads"
+    return f'<div><iframe title="Results of enmm" sandbox="{rights}" style="{style}" srcdoc="{source}"></iframe></div>'

@@ -22,7 +22,8 @@ pub struct Repository {
     pub root: PathBuf,
     /// Cargo's target directory.
     pub target: PathBuf,
-    profile: Profile,
+    /// The profile of cargo.
+    pub profile: Profile,
     cargo: OsString,
 }
 

@@ -12,6 +12,7 @@ mod tessellation;
 
 pub use cuts::LAW as CUT_LAW;
 
+use crate::keys::Plain;
 use std::collections::BTreeMap;
 
 use super::key::{Check, Invalid, Key, fail};
@@ -55,11 +56,13 @@ impl Case {
             let Some(most) = stage.duration_max else { continue };
             let (old, key) = (key.index(k).field("duration"), key.index(k).field("duration_max"));
             if stage.kind == StageKind::Dynamic {
-                let message = format!("is {most} s, but a dynamic stage takes its whole `duration`; rename it");
+                let message =
+                    format!("is {} s, but a dynamic stage takes its whole `duration`; rename it", Plain(most));
                 return fail(&key, message);
             }
             if stage.duration != 0.0 {
-                let message = format!("is {most} s, and `duration` is {} s; keep one of them", stage.duration);
+                let message =
+                    format!("is {} s, and `duration` is {} s; keep one of them", Plain(most), Plain(stage.duration));
                 return fail(&key, message);
             }
             told.origins.insert(old.to_string(), key.to_string());

@@ -6,7 +6,7 @@ mod range;
 pub(crate) mod shared;
 pub(crate) mod unit;
 
-pub use range::{Plain, Range};
+pub use range::{Plain, Range, rounded};
 pub use unit::Unit;
 
 use crate::key::{Check, Key, fail};

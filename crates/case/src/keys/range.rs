@@ -80,6 +80,11 @@ impl fmt::Display for Range {
 /// A number in the shorter of the two notations.
 pub struct Plain(pub f64);
 
+/// A computed number for a message: nine digits, finer than any step, without what rounding leaves behind them.
+pub fn rounded(value: f64) -> Plain {
+    Plain(format!("{value:.8e}").parse().unwrap_or(value))
+}
+
 impl fmt::Display for Plain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
@@ -89,6 +94,27 @@ impl fmt::Display for Plain {
             write!(f, "{}", self.0)
         } else {
             write!(f, "{:e}", self.0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_messages_have_the_digits_that_they_need() {
+        for (value, exact, short) in [
+            (0.0005000000000000004, "0.0005000000000000004", "0.0005"),
+            (0.1 + 0.2, "0.30000000000000004", "0.3"),
+            (1e-300, "1e-300", "1e-300"),
+            (5e-324, "5e-324", "5e-324"),
+            (1.0 / 3e7, "3.3333333333333334e-8", "3.33333333e-8"),
+            (-1e300, "-1e300", "-1e300"),
+            (f64::NAN, "NaN", "NaN"),
+            (0.0, "0", "0"),
+        ] {
+            assert_eq!([Plain(value).to_string(), rounded(value).to_string()], [exact, short], "{value:e}");
         }
     }
 }

@@ -37,6 +37,8 @@ pub const FORCE: Rule = Range::within(VALUE_MAX).of(NEWTON_PER_METRE).usual([10.
 pub const SHARE: Rule = Range::above(0.0).to(1.0).of(NUMBER);
 /// Times that are greater than 0.
 pub const TIME: Rule = Range::above(0.0).to(1e9).of(SECOND);
+/// Steps of time; in shorter ones rates are beyond the range of numbers.
+pub const STEP: Rule = Range::from(1e-12).to(1e9).of(SECOND);
 /// Factors on rows.
 pub const FACTOR: Rule = Range::within(1e12).of(NUMBER).hint("1 is the default");
 /// Seeds of random numbers.

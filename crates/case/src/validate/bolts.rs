@@ -2,6 +2,7 @@
 
 use super::checks::{Names, each, segment, unique};
 use crate::key::{Check, Key, fail};
+use crate::keys::Plain;
 use crate::{Anchorage, Bolt, Case, Support};
 
 /// Checks the bolts of a case.
@@ -27,8 +28,9 @@ fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
     }
     if let Some(limit) = bolt.yield_force.filter(|&limit| bolt.pretension > limit) {
         let message = format!(
-            "is {} N, must be at most {limit} N, at which the bar yields; lower it or raise `yield_force`",
-            bolt.pretension
+            "is {} N, must be at most {} N, at which the bar yields; lower it or raise `yield_force`",
+            Plain(bolt.pretension),
+            Plain(limit)
         );
         return fail(&key.field("pretension"), message);
     }

@@ -6,6 +6,8 @@ use std::fmt;
 
 use crate::key::{Check, Invalid, Key, fail, invalid, list, nearest};
 use crate::keys::Plain;
+use crate::limits::NAME_MAX;
+use crate::text::{is_hidden, shortened};
 use crate::{Case, StageKind, TimeTable};
 
 /// Checks each entry of a list.
@@ -120,18 +122,18 @@ pub fn table(key: &Key, rows: &TimeTable) -> Check {
     Ok(())
 }
 
-/// Characters without a sign of their own, which turn or hide a text.
-const HIDDEN: [std::ops::RangeInclusive<char>; 4] =
-    ['\u{200b}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2060}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
-
 /// Checks that a name does no harm where it is shown: terminals obey control characters, and spreadsheets take a text
-/// that begins with `=`, `+`, `-` or `@` for a formula.
+/// that begins with `=`, `+`, `-` or `@` for a formula. One of more than `most` letters fits nowhere.
 ///
 /// # Errors
 /// It has one of these.
-pub fn harmless(key: &Key, name: &str) -> Check {
-    let is_hidden = |c: &char| c.is_control() || HIDDEN.iter().any(|range| range.contains(c));
-    if let Some(sign) = name.chars().find(is_hidden) {
+pub fn harmless(key: &Key, name: &str, most: usize) -> Check {
+    let letters = name.chars().count();
+    if letters > most {
+        let begin = shortened(name, 20);
+        return fail(key, format!("{begin:?} has {letters} letters, must have at most {most}; shorten it"));
+    }
+    if let Some(sign) = name.chars().find(|letter| is_hidden(*letter)) {
         return fail(key, format!("{name:?} has the control character {sign:?}, which no name must have; remove it"));
     }
     match name.trim_start().chars().next().filter(|c| "=+-@".contains(*c)) {
@@ -156,7 +158,7 @@ pub fn unique<'a>(key: &Key, what: &str, names: impl Iterator<Item = Option<&'a 
         if name.trim().is_empty() {
             return fail(&place, format!("is {name:?}, a {what} needs at least one letter; give it a name"));
         }
-        harmless(&place, name)?;
+        harmless(&place, name, NAME_MAX)?;
         if let Some(first) = seen.insert(name, i) {
             let message =
                 format!("{name:?} is already the name of {}, names must differ; rename one", key.index(first));

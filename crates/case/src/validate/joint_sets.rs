@@ -2,6 +2,7 @@
 
 use super::checks::{Names, each, region};
 use crate::key::{Check, Key, fail, list, nearest};
+use crate::keys::Plain;
 use crate::{AngleDistribution, Case, Distribution, JointSet};
 
 /// Greatest standard deviation of a uniform distribution of positive values, relative to the mean: 1/√3.
@@ -15,7 +16,8 @@ pub fn validate_set(key: &Key, set: &JointSet) -> Check {
     set.check(key)?;
     for (name, value) in [("trace_length_sd", set.trace_length_sd), ("gap", set.gap)] {
         if set.trace_length.is_none() && value > 0.0 {
-            let message = format!("is {value} m, but joints without `trace_length` do not end; add `trace_length`");
+            let message =
+                format!("is {} m, but joints without `trace_length` do not end; add `trace_length`", Plain(value));
             return fail(&key.field(name), message);
         }
     }

@@ -2,6 +2,7 @@
 
 use super::checks::{each, only, segment, table, unique};
 use crate::key::{Check, Key, fail, list};
+use crate::keys::Plain;
 use crate::{Fix, Load, LoadKind};
 
 /// Checks the fixities of a case.
@@ -45,8 +46,9 @@ fn rectangle(key: &Key, [x_min, y_min, x_max, y_max]: &[f64; 4]) -> Check {
     for (axis, low, high) in [("x", x_min, x_max), ("y", y_min, y_max)] {
         if low >= high {
             let message = format!(
-                "{axis}min is {low} m, must be less than {axis}max, which is {high} m; the order is \
-                 [xmin, ymin, xmax, ymax]"
+                "{axis}min is {} m, must be less than {axis}max, which is {} m; the order is [xmin, ymin, xmax, ymax]",
+                Plain(*low),
+                Plain(*high)
             );
             return fail(key, message);
         }

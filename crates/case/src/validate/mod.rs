@@ -15,6 +15,7 @@ mod stages;
 
 use crate::key::{Check, Key, fail};
 use crate::keys::{Range, Rule};
+use crate::limits::{NAME_MAX, TITLE_MAX};
 use crate::{Case, Domain, FmuNotes, InSitu, Invalid, JointLaw, Plane, ReportNotes, Rock};
 use checks::{Names, each, harmless, points, polygon, region, unique};
 
@@ -29,12 +30,12 @@ impl Case {
     pub fn validate(&self) -> Result<(), Invalid> {
         self.must_be_expanded()?;
         let root = Key::root();
-        harmless(&root.field("title"), &self.title)?;
+        harmless(&root.field("title"), &self.title, TITLE_MAX)?;
         let sets = self.joint_sets.iter().map(|set| set.name.as_deref()).enumerate();
         sets.filter_map(|(k, name)| Some((k, name?)))
-            .try_for_each(|(k, name)| harmless(&root.field("joint_set").index(k).field("name"), name))?;
-        self.rocks.keys().try_for_each(|name| harmless(&root.field("rock"), name))?;
-        self.joint_laws.keys().try_for_each(|name| harmless(&root.field("joint_law"), name))?;
+            .try_for_each(|(k, name)| harmless(&root.field("joint_set").index(k).field("name"), name, NAME_MAX))?;
+        self.rocks.keys().try_for_each(|name| harmless(&root.field("rock"), name, NAME_MAX))?;
+        self.joint_laws.keys().try_for_each(|name| harmless(&root.field("joint_law"), name, NAME_MAX))?;
         self.validate_drawing()?;
         domain(&root.field("domain"), &self.domain)?;
         self.mesh.check(&root.field("mesh"))?;

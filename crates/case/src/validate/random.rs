@@ -1,6 +1,7 @@
 //! Checks of random values, their correlations and the ensemble.
 
 use crate::key::{Check, Key, fail, list};
+use crate::keys::Plain;
 use crate::keys::{Range, Rule};
 use crate::random::{Ensemble, EnsembleOutput, POSITIVE, RandomDistribution, RandomVariable, Sampling};
 use crate::{Case, RandomOf};
@@ -73,7 +74,7 @@ fn ascending(key: &Key, [a, b]: [(&str, Option<f64>); 2], may_equal: bool) -> Ch
     match (a.1, b.1) {
         (Some(x), Some(y)) if x > y || (x == y && !may_equal) => {
             let how = if may_equal { "at most" } else { "less than" };
-            fail(&key.field(a.0), format!("is {x}, must be {how} {}, {y}; swap or correct them", b.0))
+            fail(&key.field(a.0), format!("is {}, must be {how} {}, {}; swap or correct them", Plain(x), b.0, Plain(y)))
         }
         _ => Ok(()),
     }

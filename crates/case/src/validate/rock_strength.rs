@@ -1,6 +1,7 @@
 //! Checks of the strength of rock: signs and ranges, and what makes no sense together.
 
 use crate::key::{Check, Key, fail};
+use crate::keys::Plain;
 use crate::keys::{Range, Rule};
 use crate::rock::FREE;
 use crate::{HoekBrown, Plane, Rock};
@@ -44,7 +45,8 @@ fn mohr_coulomb(key: &Key, rock: &Rock) -> Check {
 fn hoek_brown(key: &Key, rock: &Rock, mass: &HoekBrown) -> Check {
     for (name, value) in [("friction_deg", rock.friction_deg), ("cohesion", rock.cohesion)] {
         if let Some(value) = value {
-            let message = format!("is {value} beside hoek_brown, at most one of both strengths can hold; remove one");
+            let message =
+                format!("is {} beside hoek_brown, at most one of both strengths can hold; remove one", Plain(value));
             return fail(&key.field(name), message);
         }
     }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use enmm::model::case::plausible;
+use enmm::model::case::text::{is_hidden, shortened, visible};
 use enmm_io::{DEFAULT_LAW, LayerSurvey, Survey};
 
 use super::layers::{Mapped, mapped, outline};
@@ -12,6 +13,9 @@ use super::layers::{Mapped, mapped, outline};
 const TRIANGLES_PER_HEIGHT: f64 = 25.0;
 /// Share of the height within which an edge counts as level or upright, and as on the rim.
 const STRAIGHT: f64 = 1e-6;
+
+/// Letters of a name in the table of layers.
+const SHOWN: usize = 60;
 
 /// A key whose value the drawing does not have.
 struct Value {
@@ -49,21 +53,23 @@ impl<'a> Draft<'a> {
     pub fn case(&self, drawing: &str) -> String {
         let mut text = String::from("#:schema case.schema.json\n");
         for (head, lines) in self.findings() {
-            lines.iter().for_each(|line| text += &format!("# {head}: {line}\n"));
+            lines.iter().for_each(|line| text += &format!("# {head}: {}\n", visible(line)));
         }
         let title = Path::new(drawing).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let _ = write!(text, "title = {title:?}\n\n[domain]\ngeometry_file = {drawing:?}\n");
+        let _ = write!(text, "title = {}\n\n[domain]\n", quoted(&title));
+        let _ = writeln!(text, "geometry_file = {}", quoted(drawing));
         // Joints of a file that is no drawing to which it gives no law.
         let lawless = |layer: &&LayerSurvey| !self.survey.is_drawing && layer.name == DEFAULT_LAW;
         if let Some(layer) = self.survey.layers.iter().find(lawless) {
-            let _ = writeln!(text, "joint_law = {:?}", layer.name);
+            let _ = writeln!(text, "joint_law = {}", quoted(&layer.name));
         }
         for mapped in self.layers.iter().filter(|_| self.survey.is_drawing) {
             text += &layer_table(mapped);
         }
         let _ = write!(text, "\n[mesh]\nsize = {}\n", self.mesh_size());
         for (head, values) in self.tables() {
-            text += &self.table(&head.replace("[[bolt]] ", "[[bolt]]\nname = "), values);
+            let bolt = head.strip_prefix("[[bolt]] ").map(|name| format!("[[bolt]]\nname = {name}"));
+            text += &self.table(&bolt.unwrap_or(head), values);
         }
         for (edge, axes) in self.fixities() {
             let [[a, b], [c, d]] = edge;
@@ -78,8 +84,8 @@ impl<'a> Draft<'a> {
         for mapped in &self.layers {
             let name = mapped.name.as_deref().unwrap_or_default();
             match mapped.role {
-                "joint" => tables.push((format!("[joint_law.{}]", quoted(name)), &LAW)),
-                "bolt" => tables.push((format!("[[bolt]] {name:?}"), &BOLT)),
+                "joint" => tables.push((format!("[joint_law.{}]", key(name)), &LAW)),
+                "bolt" => tables.push((format!("[[bolt]] {}", quoted(name)), &BOLT)),
                 _ => {}
             }
         }
@@ -88,15 +94,16 @@ impl<'a> Draft<'a> {
 
     /// Lines to print: layers, assumptions and open points.
     pub fn report(&self, case: &Path) -> String {
-        let width = self.layers.iter().map(|mapped| mapped.layer.name.chars().count()).max().unwrap_or(0).max(5);
+        let names: Vec<String> = self.layers.iter().map(|mapped| shortened(&mapped.layer.name, SHOWN)).collect();
+        let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(5);
         let mut lines = vec![format!("coordinates are in {}", self.survey.unit)];
         let [[left, right], [low, high]] = self.bounds();
         lines.extend(plausible::odd_size([right - left, high - low]).map(|odd| format!("warning: {odd}")));
         lines.extend(self.survey.notes.iter().map(|note| format!("note: {note}")));
         lines.push(format!("{:<width$}  {:<8}  entities", "layer", "use"));
-        for mapped in &self.layers {
+        for (mapped, name) in self.layers.iter().zip(names) {
             let entities: Vec<String> = mapped.layer.counts.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
-            let line = format!("{:<width$}  {:<8}  {}", mapped.layer.name, mapped.role, entities.join(", "));
+            let line = format!("{name:<width$}  {:<8}  {}", mapped.role, entities.join(", "));
             lines.push(line);
         }
         for (head, found) in self.findings() {
@@ -204,15 +211,25 @@ impl<'a> Draft<'a> {
 fn layer_table(mapped: &Mapped) -> String {
     let name = mapped.name.as_ref();
     let law = name.map(|name| match mapped.role {
-        "bolt" => format!("bolt = {name:?}\n"),
-        _ => format!("law = {name:?}\n"),
+        "bolt" => format!("bolt = {}\n", quoted(name)),
+        _ => format!("law = {}\n", quoted(name)),
     });
-    let head = quoted(&mapped.layer.name);
+    let head = key(&mapped.layer.name);
     format!("\n[layers.{head}]\nuse = {:?}\n{}", mapped.role, law.unwrap_or_default())
 }
 
 /// A name as a key of TOML.
-fn quoted(name: &str) -> String {
+fn key(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { name.to_owned() } else { format!("{name:?}") }
+    if bare { name.to_owned() } else { quoted(name) }
+}
+
+/// A text as a string of TOML, with hidden characters as their codes, so that the case reads as it is.
+fn quoted(text: &str) -> String {
+    let escaped = |letter: char| match letter {
+        '"' | '\\' => format!("\\{letter}"),
+        _ if is_hidden(letter) => format!("\\U{:08X}", u32::from(letter)),
+        _ => letter.to_string(),
+    };
+    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
 }

@@ -53,6 +53,7 @@ pub fn read(lines: &[&str], wanted: &Wanted) -> Result<Series, Fault> {
         Some(time) => format!("s {} and {}", time + 1, columns.value + 1),
         None => format!(" {}", columns.value + 1),
     };
+    series.taken += &head.note;
     Ok(series)
 }
 

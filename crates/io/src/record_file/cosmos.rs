@@ -4,6 +4,7 @@
 //! *COSMOS Strong Motion Data Format*, version 1.20 (2001): the 34th of the reals is the time between values, and the
 //! values begin behind a line such as `6000 acceleration pts, approx  60 secs, units=cm/sec2 (04),Format=(8F10.5)`.
 
+use enmm::model::case::keys::{Plain, rounded};
 use enmm::model::case::record::BaseMotionKind;
 
 use super::numbers::{Layout, count, leading, numbers};
@@ -96,8 +97,11 @@ fn plausible(dt: f64, line: usize, told: &str, points: usize) -> Result<(f64, us
         // The line has whole seconds.
         Some(seconds) if (lasts - seconds).abs() > 1.5 + 0.02 * seconds => {
             let message = format!(
-                "the time between values is {dt} s, by which the record lasts {lasts} s, and it says approx \
-                 {seconds} s; correct the head"
+                "the time between values is {} s, by which the record lasts {} s, and it says approx {} s; correct the \
+                 head",
+                Plain(dt),
+                rounded(lasts),
+                Plain(seconds)
             );
             Err(Fault::Line(line, message))
         }

@@ -28,6 +28,8 @@ pub struct Head {
     texts: Vec<String>,
     /// Time between values that a comment gives, and its line (counted from 1).
     pub step: Option<(f64, usize)>,
+    /// That a line is taken for names, if it has none that is known.
+    pub note: String,
     /// Number of lines.
     pub lines: usize,
 }
@@ -58,11 +60,24 @@ fn names(line: &str) -> Vec<String> {
     found
 }
 
+/// Refuses a line of names that begins like a number, or has one behind its first name: a row with a slip.
+fn no_row(line: &str, k: usize) -> Result<(), Fault> {
+    let mut fields = fields(line);
+    let Some(first) = fields.next() else { return Ok(()) };
+    let is_digit = |sign: char| sign.is_ascii_digit();
+    let begins = first.trim_start_matches(['+', '-', '.']).starts_with(is_digit);
+    if begins || fields.next().is_some_and(|second| second.parse::<f64>().is_ok()) {
+        let message = number(first).err().unwrap_or_default();
+        return Err(Fault::Line(k, format!("{message}; correct the row, or begin a heading with `#`")));
+    }
+    Ok(())
+}
+
 impl Head {
     /// Reads what stands before the first row, which is the line (as an index) that is returned.
     ///
     /// # Errors
-    /// A second line of names.
+    /// A second line of names, or one that looks like a row with a slip.
     pub fn read(lines: &[&str]) -> Result<(Self, usize), Fault> {
         let mut head = Self::default();
         let (mut line_of_names, mut last_comment) = (None, None);
@@ -77,17 +92,24 @@ impl Head {
                 _ if is_sign => continue,
                 (None, Some(first)) if first.parse::<f64>().is_ok() => {
                     let width = fields(line).count();
-                    let mut named = line_of_names.or(last_comment).map(names).unwrap_or_default();
+                    let heading = line_of_names.map(|(_, line)| line).or(last_comment);
+                    let mut named = heading.map(names).unwrap_or_default();
                     while named.last().is_some_and(String::is_empty) {
                         named.pop();
                     }
                     if named.len() == width {
                         head.names = named.into_iter().map(Name).collect();
                     }
+                    if let Some((line, _)) = line_of_names.filter(|_| !head.names.iter().any(Name::is_known)) {
+                        head.note = format!(", line {line} is taken for a heading");
+                    }
                     head.lines = k;
                     return Ok((head, k));
                 }
-                _ if line_of_names.is_none() => line_of_names = Some(line),
+                _ if line_of_names.is_none() => {
+                    no_row(line, k + 1)?;
+                    line_of_names = Some((k + 1, line));
+                }
                 _ => head.second_line(line, k)?,
             }
             head.step = head.step.or_else(|| step_of(text).map(|dt| (dt, k + 1)));
@@ -214,6 +236,11 @@ impl Name {
     pub fn is_time(&self) -> bool {
         let words = self.words();
         words.first().is_some_and(|word| TIMES.contains(&word.as_str())) || words.iter().any(|word| word == "time")
+    }
+
+    /// Whether it says what its column is.
+    fn is_known(&self) -> bool {
+        self.is_time() || self.is_index() || self.kind().is_some()
     }
 
     /// Whether it is that of numbers of rows.

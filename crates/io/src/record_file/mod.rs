@@ -68,7 +68,6 @@ const COLUMNS: &str = "column";
 /// # Errors
 /// The first line or key that cannot be used.
 pub fn parse(file: &str, text: &str, wanted: &Wanted) -> Result<Record, Fault> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines: Vec<&str> = text.lines().collect();
     let head = &lines[..lines.len().min(series::HEAD_LINES)];
     let ending = Path::new(file).extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();

@@ -1,5 +1,6 @@
 //! Values of a record as a file has them, and what its head says of them.
 
+use enmm::model::case::keys::Plain;
 use enmm::model::case::record::{BaseMotionKind, TimeUnit};
 
 use super::numbers::{Layout, numbers};
@@ -85,16 +86,17 @@ pub fn step(dt: f64, line: usize) -> Result<f64, Fault> {
     }
     Err(Fault::Line(
         line,
-        format!("the time between values is {dt} s, must be above 0 and at most 1e6 s; correct the head"),
+        format!("the time between values is {} s, must be above 0 and at most 1e6 s; correct the head", Plain(dt)),
     ))
 }
 
 /// Checks that the case gives no other time between values than the head.
 pub fn same_step(given: Option<f64>, head: f64) -> Result<(), Fault> {
     match given {
-        Some(dt) if (dt - head).abs() > 1e-6 * head => {
-            Err(Fault::Key("record.dt", format!("is {dt} s, and the head of the file says {head} s; remove it")))
-        }
+        Some(dt) if (dt - head).abs() > 1e-6 * head => Err(Fault::Key(
+            "record.dt",
+            format!("is {} s, and the head of the file says {} s; remove it", Plain(dt), Plain(head)),
+        )),
         _ => Ok(()),
     }
 }

@@ -6,6 +6,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use enmm::geometry::Vector;
 use miniz_oxide::deflate::compress_to_vec_zlib;
+use quick_xml::escape::escape;
 
 /// Bytes that are compressed together.
 const BLOCK: usize = 1 << 16;
@@ -108,7 +109,7 @@ impl<'a> Array<'a> {
             write!(file, " NumberOfComponents=\"{}\"", self.components)?;
         }
         for (k, name) in self.component_names.iter().enumerate() {
-            write!(file, " ComponentName{k}=\"{}\"", escaped(name))?;
+            write!(file, " ComponentName{k}=\"{}\"", escape(name))?;
         }
         write!(file, " NumberOfTuples=\"{}\" format=\"binary\">", self.count)?;
         let mut blocks = Blocks::default();
@@ -116,11 +117,6 @@ impl<'a> Array<'a> {
         blocks.finish(file)?;
         writeln!(file, "</DataArray>")
     }
-}
-
-/// A text as the value of an attribute.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// Bytes that are compressed block by block as they come.

@@ -7,14 +7,13 @@
 
 mod array;
 
-use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use array::Array;
 use enmm::geometry::Point;
 use enmm::model::Simulation;
-use enmm_io::files::{at_path, write_atomic, write_atomic_by};
+use enmm_io::files::{at_path, open_result, write_atomic, write_atomic_by};
 use enmm_observe::{
     BOLT_QUANTITIES, BoltCondition, BoltLine, BondState, ContactState, JOINT_QUANTITIES, JointPiece, Joints, Quantity,
     STRESS_QUANTITIES, Snapshot, SupportKind, SupportPoint, WetEdge, bolts, supports, wet_edges,
@@ -323,7 +322,7 @@ impl PvdWriter {
     /// `InvalidData` if `run.pvd` is not a collection that this type wrote; else what the file system refuses.
     pub fn open_for_append(directory: &Path, parts: Vec<Part>, keep_until_time: f64) -> io::Result<Self> {
         let path = directory.join("run.pvd");
-        let text = match fs::read_to_string(&path) {
+        let text = match open_result(&path).and_then(io::read_to_string) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Self::new(directory, parts),
             read => read.map_err(at_path(&path))?,
         };

@@ -171,7 +171,7 @@ pub fn missing(records: &Records) -> String {
     }
     let pictures = [(&records.run, "model"), (&records.fos, "failure"), (&records.ensemble, "ensemble")];
     for (record, name) in pictures {
-        if record.as_ref().is_some_and(|record| record.picture(name).is_none()) {
+        if record.as_ref().is_some_and(|record| matches!(record.picture(name), Ok(None))) {
             lines.push(format!("Picture {name}.svg: it was not drawn."));
         }
     }

@@ -7,9 +7,13 @@ use serde_json::Value;
 use super::records::Record;
 use super::table::text_html;
 
-/// A picture of a record with a caption; empty where it is not there.
+/// A picture of a record with a caption, or why it is left out; empty where it is not there.
 pub fn figure(record: &Record, name: &str, caption: &str) -> String {
-    let Some(svg) = record.picture(name) else { return String::new() };
+    let svg = match record.picture(name) {
+        Ok(Some(svg)) => svg,
+        Ok(None) => return String::new(),
+        Err(error) => return format!("<p>{}</p>\n", text_html(&format!("Picture {name}.svg is left out: {error}."))),
+    };
     let caption = text_html(caption);
     format!(
         "<figure>\n<img alt=\"{caption}\" src=\"data:image/svg+xml;base64,{}\">\n<figcaption>{caption}</figcaption>\n\

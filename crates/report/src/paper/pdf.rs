@@ -4,11 +4,13 @@ use std::env;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use enmm_io::files::temporary_beside;
+use enmm_io::files::{Unfinished, is_running};
+use tempfile::TempDir;
 
 /// Browsers of the family of Chromium, in the order in which they are looked for.
 const BROWSERS: [&str; 7] =
@@ -27,6 +29,9 @@ const OTHERS: [&str; 2] = ["weasyprint", "wkhtmltopdf"];
 const PATIENCE: Duration = Duration::from_secs(180);
 /// Time between two looks at it.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// Begin of the names of profiles, before the number of our process.
+const PROFILE: &str = "enmm_browser.";
 
 /// A program that makes a PDF of an HTML file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,6 +62,9 @@ pub enum PdfError {
         /// The page.
         page: PathBuf,
     },
+    /// The user has ended it.
+    #[error("interrupted: print {} from a browser, or run the command again", .0.display())]
+    Interrupted(PathBuf),
     /// The converter failed.
     #[error("{} made no PDF (status {status}): print {} from a browser", program.display(), page.display())]
     Failed {
@@ -90,27 +98,33 @@ impl Converter {
         &self.program
     }
 
-    /// Prints a page into a PDF, whole or not at all.
+    /// Prints a page into a PDF, whole or not at all; `interrupt` ends the converter.
     ///
     /// # Errors
     /// See [`PdfError`].
-    pub fn convert(&self, page: &Path, pdf: &Path) -> Result<(), PdfError> {
+    pub fn convert(&self, page: &Path, pdf: &Path, interrupt: &AtomicBool) -> Result<(), PdfError> {
         let io = |error| PdfError::Io { program: self.program.clone(), error };
         let page = page.canonicalize().map_err(io)?;
-        let made = temporary_beside(pdf).map_err(io)?;
-        let profile = temporary_beside(&env::temp_dir().join("enmm_browser")).map_err(io)?;
-        let outcome = self.run(&page, &made, &profile);
-        // The profile of the browser is of no use afterwards; one that cannot go stays.
-        let _ = fs::remove_dir_all(&profile);
-        let outcome = outcome.and_then(|()| fs::rename(&made, pdf).map_err(io));
-        if outcome.is_err() {
-            let _ = fs::remove_file(&made);
+        let (made, file) = Unfinished::beside(pdf).map_err(io)?;
+        drop(file);
+        let profile = profile().map_err(io)?;
+        let mut child = self.command(&page, made.path(), profile.path()).spawn().map_err(io)?;
+        let ended = wait(&mut child, interrupt).map_err(io)?;
+        if ended.is_none() {
+            let _ = child.kill();
+            let _ = child.wait();
         }
-        outcome
+        let program = self.program.clone();
+        let is_pdf = fs::read(made.path()).is_ok_and(|bytes| bytes.starts_with(b"%PDF-"));
+        match ended {
+            Some(status) if status.success() && is_pdf => made.finish().map_err(io),
+            Some(status) => Err(PdfError::Failed { program, status: status.code().unwrap_or(-1), page }),
+            None if interrupt.load(Ordering::Relaxed) => Err(PdfError::Interrupted(page)),
+            None => Err(PdfError::Slow { program, page }),
+        }
     }
 
-    fn run(&self, page: &Path, made: &Path, profile: &Path) -> Result<(), PdfError> {
-        let io = |error| PdfError::Io { program: self.program.clone(), error };
+    fn command(&self, page: &Path, made: &Path, profile: &Path) -> Command {
         let mut command = Command::new(&self.program);
         if self.is_browser {
             command.args(["--headless", "--disable-gpu", "--no-first-run", "--no-pdf-header-footer"]);
@@ -126,26 +140,55 @@ impl Converter {
             command.args([page, made]);
         }
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        let mut child = command.spawn().map_err(io)?;
-        let start = Instant::now();
-        let status = loop {
-            match child.try_wait().map_err(io)? {
-                Some(status) => break status,
-                None if start.elapsed() > PATIENCE => {
-                    let _ = child.kill();
-                    let _ = child.wait();
-                    return Err(PdfError::Slow { program: self.program.clone(), page: page.to_owned() });
-                }
-                None => thread::sleep(LOOK),
-            }
-        };
-        let is_pdf = fs::read(made).is_ok_and(|bytes| bytes.starts_with(b"%PDF-"));
-        if status.success() && is_pdf {
-            return Ok(());
-        }
-        let status = status.code().unwrap_or(-1);
-        Err(PdfError::Failed { program: self.program.clone(), status, page: page.to_owned() })
+        command
     }
+}
+
+/// Waits for a converter; none when it takes too long or the user interrupts.
+fn wait(child: &mut Child, interrupt: &AtomicBool) -> io::Result<Option<ExitStatus>> {
+    let start = Instant::now();
+    while start.elapsed() < PATIENCE && !interrupt.load(Ordering::Relaxed) {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        thread::sleep(LOOK);
+    }
+    Ok(None)
+}
+
+/// A folder for the profile of a browser, which no other user can make beforehand or enter; it goes when it is dropped.
+/// Those that killed processes of this user have left go now.
+fn profile() -> io::Result<TempDir> {
+    let prefix = format!("{PROFILE}{}-", std::process::id());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
+    let profile = builder.tempdir()?;
+    for entry in fs::read_dir(env::temp_dir())?.flatten() {
+        let name = entry.file_name();
+        let process = name.to_str().and_then(|name| name.strip_prefix(PROFILE)?.split_once('-')?.0.parse().ok());
+        let is_left = process.is_some_and(|process| !is_running(process));
+        if is_left && is_own(&entry.path(), profile.path()) {
+            // One that cannot go stays for the next report.
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+    Ok(profile)
+}
+
+/// Whether a path is a folder, and no link to one, of the user whose folder the other is.
+#[cfg(unix)]
+fn is_own(path: &Path, other: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let owner = |path: &Path| fs::symlink_metadata(path).ok().filter(fs::Metadata::is_dir).map(|found| found.uid());
+    owner(path).is_some_and(|found| owner(other) == Some(found))
+}
+
+/// Whether a path is a folder; each user has a place for temporary files.
+#[cfg(not(unix))]
+fn is_own(path: &Path, _: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
 /// A program on the search path.

@@ -1,13 +1,15 @@
 //! What commands have left in a folder of results.
 
-use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use enmm_io::files::read_result;
 use serde_json::Value;
 
 /// Largest record that is read (bytes).
 const RECORD_MAX: u64 = 256 << 20;
+/// Largest picture that is read (bytes).
+const PICTURE_MAX: u64 = 64 << 20;
 
 /// The record of one command.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +48,9 @@ pub enum RecordsError {
         .0.display(), .0.display()
     )]
     Nothing(PathBuf),
+    /// One of its folders is a link.
+    #[error("{}: it is a link, which a report does not follow: put the folder itself in its place", .0.display())]
+    Link(PathBuf),
     /// A record cannot be read.
     #[error("{}: {message}; run the command that wrote it again", path.display())]
     Unreadable {
@@ -65,9 +70,10 @@ impl Records {
         if !directory.is_dir() {
             return Err(RecordsError::NoFolder(directory.to_owned()));
         }
-        let find = |name: &'static str, below: &str| match read(directory, name)? {
-            None => read(&directory.join(below), name),
-            found => Ok(found),
+        let find = |name: &'static str, below: &str| match (read(directory, name)?, directory.join(below)) {
+            (None, link) if link.is_symlink() => Err(RecordsError::Link(link)),
+            (None, below) => read(&below, name),
+            (found, _) => Ok(found),
         };
         let records = Self {
             run: find("summary.json", "run")?,
@@ -91,25 +97,30 @@ impl Records {
 
 impl Record {
     /// A picture of the record, without ending, as the bytes of an SVG file; none if it is not there.
-    pub fn picture(&self, name: &str) -> Option<Vec<u8>> {
-        fs::read(self.folder.join(format!("{name}.svg"))).ok()
+    ///
+    /// # Errors
+    /// It is a link, no regular file, longer than a picture, or no SVG: a report goes to others, and must not show them
+    /// a file of the reader that the maker of the folder has chosen.
+    pub fn picture(&self, name: &str) -> io::Result<Option<Vec<u8>>> {
+        let bytes = match read_result(&self.folder.join(format!("{name}.svg")), PICTURE_MAX) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            read => read?,
+        };
+        if bytes.starts_with(b"<svg ") {
+            Ok(Some(bytes))
+        } else {
+            Err(io::Error::new(ErrorKind::InvalidData, "it is no picture that enmm has drawn"))
+        }
     }
 }
 
 fn read(folder: &Path, name: &'static str) -> Result<Option<Record>, RecordsError> {
     let path = folder.join(name);
     let unreadable = |message: String| RecordsError::Unreadable { path: path.clone(), message };
-    match fs::metadata(&path) {
+    let bytes = match read_result(&path, RECORD_MAX) {
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
-        Err(error) => return Err(unreadable(error.to_string())),
-        Ok(metadata) if !metadata.is_file() => return Err(unreadable("is no regular file".to_owned())),
-        Ok(metadata) if metadata.len() > RECORD_MAX => {
-            let message = format!("has {} bytes, the limit is {RECORD_MAX}", metadata.len());
-            return Err(unreadable(message));
-        }
-        Ok(_) => {}
-    }
-    let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+        read => read.map_err(|error| unreadable(error.to_string()))?,
+    };
     let json: Value = serde_json::from_slice(&bytes).map_err(|error| unreadable(error.to_string()))?;
     if !json.is_object() {
         return Err(unreadable("is no JSON object".to_owned()));

@@ -15,6 +15,7 @@ mod slip;
 mod toppling;
 mod trial;
 
+use enmm::model::case::keys::rounded;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use enmm::geometry::{Point, Vector};
@@ -246,8 +247,9 @@ pub enum ReductionError {
     Case(#[from] Invalid),
     /// The slope does not come to rest, whatever its strength.
     #[error(
-        "stage {stage:?} does not come to rest within {time:.4} s even with {HELD} times the strength (unbalanced \
-         ratio {unbalanced:.2e}): lengthen the stage's duration, or hold or excavate the blocks that are loose"
+        "stage {stage:?} does not come to rest within {} s even with {HELD} times the strength (unbalanced \
+         ratio {unbalanced:.2e}): {remedy}",
+        rounded(*time)
     )]
     NotAtRest {
         /// Stage.
@@ -256,6 +258,8 @@ pub enum ReductionError {
         time: f64,
         /// Unbalanced ratio then.
         unbalanced: f64,
+        /// What to do.
+        remedy: &'static str,
     },
     /// A numerical failure before the trials.
     #[error("before the trials: {0}")]

@@ -30,6 +30,16 @@ pub struct Rest {
     pub warnings: Vec<String>,
 }
 
+/// What to do about a slope that does not come to rest.
+fn remedy(case: &Case) -> &'static str {
+    let weightless = [case.gravity.x, case.gravity.y] == [0.0; 2];
+    if weightless && case.loads.is_empty() && case.in_situ.is_none() {
+        "neither gravity nor a load acts, so that all forces are round-off; give one of them"
+    } else {
+        "lengthen the stage's duration, or hold or excavate the blocks that are loose"
+    }
+}
+
 /// Runs the static stages that the case begins with, with joints and rock that hold: so all trials start from one
 /// state, whatever the strength of the case.
 ///
@@ -46,7 +56,8 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
         let report = outcome.ok_or(ReductionError::Interrupted)?;
         if !simulation.at_rest(&report) {
             let (stage, time) = (simulation.stage().name.clone(), simulation.time());
-            return Err(ReductionError::NotAtRest { stage, time, unbalanced: report.unbalanced });
+            let (unbalanced, remedy) = (report.unbalanced, remedy(simulation.case()));
+            return Err(ReductionError::NotAtRest { stage, time, unbalanced, remedy });
         }
         simulation.next_stage()?;
     }

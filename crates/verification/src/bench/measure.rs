@@ -284,14 +284,12 @@ impl Measured {
     fn take_outputs(&mut self, simulation: &Simulation) -> Result<(), BenchError> {
         let clock = Instant::now();
         let snapshot = Snapshot::of(simulation);
-        let folder = std::env::temp_dir();
-        let file = |kind: &str| folder.join(format!("enmm-bench-{}-{kind}.vtu", std::process::id()));
-        let files = [file("elements"), file("joints")];
+        let folder = tempfile::tempdir()?;
+        let files = ["elements.vtu", "joints.vtu"].map(|name| folder.path().join(name));
         let joints = Joints::of(simulation).now(simulation);
         let (laws, time) = (&snapshot.joint_laws, snapshot.time);
         let written = write_vtu(&snapshot, &files[0]).and_then(|()| write_joints_vtu(&joints, laws, time, &files[1]));
         self.frame_ms = 1e3 * clock.elapsed().as_secs_f64();
-        files.iter().for_each(|file| drop(std::fs::remove_file(file)));
         written?;
         let clock = Instant::now();
         self.checkpoint_bytes = encode(Keeper::Model, simulation.state(), "").map_err(io::Error::other)?.len();

@@ -1,5 +1,6 @@
 //! A model behind a handle: the façade, the log of its host, and the calls that make it move.
 
+use engine::model::case::keys::rounded;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -338,7 +339,8 @@ impl Model {
         }
         if info.unsettled > 0 {
             let (count, end) = (info.unsettled, info.time);
-            let message = || format!("up to t = {end} s: contact forces did not settle in {count} sub-steps");
+            let message =
+                || format!("up to t = {} s: contact forces did not settle in {count} sub-steps", rounded(end));
             self.log.write(enmm_log_level::ENMM_LOG_WARNING, message);
         }
         self.warn_of_failure(info.failure);
@@ -380,8 +382,7 @@ pub fn interpolation(mode: i32) -> Result<Interpolation, Failure> {
 
 /// An event in words; the mesh size (m) is what the depth of an overlap is compared with.
 fn sentence(event: &Event, mesh_size: f64) -> String {
-    // Digits beyond a nanosecond are those of the sum of steps.
-    let (subject, time) = (event.subject, (event.time * 1e9).round() / 1e9);
+    let (subject, time) = (event.subject, rounded(event.time));
     match event.kind {
         EventKind::Detached => format!("t = {time} s: block {subject} lost its last contact"),
         EventKind::Slipped if subject == u32::MAX => format!("t = {time} s: a contact away from joints slipped"),

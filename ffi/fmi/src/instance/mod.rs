@@ -13,6 +13,7 @@ mod write;
 
 pub use step::{Step, Update};
 
+use enmm::model::case::keys::Plain;
 use std::path::Path;
 
 use enmm::cosimulation::{Cosimulation, Event, Interpolation, Saved, apply};
@@ -233,12 +234,16 @@ impl Instance {
 
     fn take_times(&mut self, start: f64, stop: Option<f64>) -> Result<(), Failure> {
         if !start.is_finite() {
-            return Err(format!("the start time is {start} s, must be finite"));
+            return Err(format!("the start time is {} s, must be finite", Plain(start)));
         }
         if let Some(stop) = stop
             && !(stop.is_finite() && stop >= start)
         {
-            return Err(format!("the stop time is {stop} s, must be finite and not before the start, {start} s"));
+            return Err(format!(
+                "the stop time is {} s, must be finite and not before the start, {} s",
+                Plain(stop),
+                Plain(start)
+            ));
         }
         self.experiment = Experiment { start, stop };
         self.time = start;

@@ -1,6 +1,7 @@
 //! Communication steps, one internal step at a time, so that the importer can be told and asked in between.
 
 use enmm::cosimulation::{CosimulationError, Event, EventKind, Interval};
+use enmm::model::case::keys::{Plain, rounded};
 
 use crate::log::{Category, Status};
 use crate::phase::{Call, Phase};
@@ -64,7 +65,11 @@ impl Instance {
         if let Some(stop) = self.experiment.stop
             && end > stop + STOP_TOLERANCE * (stop - self.experiment.start) + STOP_ROUNDING * stop.abs()
         {
-            return Err(format!("the step ends at {end} s, must not end after the stop time, {stop} s"));
+            return Err(format!(
+                "the step ends at {} s, must not end after the stop time, {} s",
+                Plain(end),
+                Plain(stop)
+            ));
         }
         let now = (t - self.time).abs() <= self.same_time(self.time);
         if !now {
@@ -214,5 +219,5 @@ fn event_text(event: &Event, start: f64, mesh_size: f64) -> String {
         EventKind::Overlapped => event.overlap_text(mesh_size),
     };
     let meaning = if event.kind == EventKind::Overlapped { ": results about them are wrong from here on" } else { "" };
-    format!("{what} at t = {time} s{meaning}")
+    format!("{what} at t = {} s{meaning}", rounded(time))
 }

@@ -5,7 +5,7 @@ mod names;
 use std::path::Path;
 
 use crate::platform::{HERE, Platform};
-use crate::repository::{self, Repository, write};
+use crate::repository::{self, Profile, Repository, write};
 use crate::wheel;
 use names::{Names, System};
 
@@ -14,7 +14,11 @@ const HEADERS: [&str; 2] = ["include/enmm.h", "ffi/cpp/enmm.hpp"];
 
 /// Builds program and libraries and installs them below `prefix`.
 pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
-    repository.build(&wheel::packages().collect::<Vec<_>>())?;
+    let mut cargo = match repository.profile {
+        Profile::Shipped => repository.cargo_to_ship(&["build", "--release"]),
+        Profile::Tested => repository.cargo(&["build"]),
+    };
+    repository::run(cargo.args(wheel::packages()))?;
     let version = env!("CARGO_PKG_VERSION");
     let names = System::of(&HERE).names(version);
     copy(&repository.enmm(), &prefix.join("bin").join(HERE.program()))?;

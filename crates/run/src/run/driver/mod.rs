@@ -2,6 +2,7 @@
 
 mod warnings;
 
+use enmm::model::case::keys::rounded;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -291,10 +292,10 @@ impl<'a> Driver<'a> {
 /// Warning when the run goes on from the state of a host.
 fn unseen_past(simulation: &Simulation) -> String {
     format!(
-        "the run goes on from the state of a host at t = {:.6} s, with the inputs that held there: of stages before \
+        "the run goes on from the state of a host at t = {} s, with the inputs that held there: of stages before \
          only the times are known, and displacements of this stage count from there; a folder that the host has \
          recorded (enmm_record) has a checkpoint with all of it",
-        simulation.time()
+        rounded(simulation.time())
     )
 }
 
@@ -308,10 +309,10 @@ fn lost_past(past: Past, simulation: &Simulation, directory: &Path) -> Option<St
     let lost = past == Past::Lost && simulation.time() > 0.0;
     lost.then(|| {
         format!(
-            "history.csv and frames in {} begin at t = {:.6} s: neither there nor beside the checkpoint is a \
+            "history.csv and frames in {} begin at t = {} s: neither there nor beside the checkpoint is a \
              history.csv with the rows before; continue from the checkpoint in the directory of its run to have them",
             directory.display(),
-            simulation.time()
+            rounded(simulation.time())
         )
     })
 }
