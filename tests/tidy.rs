@@ -185,6 +185,11 @@ fn no_host_of_a_registry_is_named() {
 }
 
 #[test]
+fn actions_of_workflows_are_named_by_hash() {
+    hold(each(&[".yml"], &[""], action_problems));
+}
+
+#[test]
 fn every_test_file_says_what_it_claims_and_is_compiled() {
     hold(each(&[".rs"], &[""], header_problems));
     hold(lost_tests(&repository()));
@@ -458,6 +463,13 @@ fn word_problems(file: &File) -> Vec<String> {
 }
 
 /// Numbers with a point or a power other than 0.0: constants have a name elsewhere.
+fn action_problems(file: &File) -> Vec<String> {
+    let is_hash = |version: &str| version.len() == 40 && version.bytes().all(|b| b.is_ascii_hexdigit());
+    let used = file.text.lines().filter_map(|line| line.split_once("uses: ")?.1.split_whitespace().next());
+    let loose = used.filter(|action| !action.split_once('@').is_some_and(|(_, version)| is_hash(version)));
+    loose.map(|action| format!("{}: {action}: name the version by the hash of its commit", file.path)).collect()
+}
+
 fn number_problems(file: &File) -> Vec<String> {
     let is_number = |word: &&str| {
         let is_real = word.contains('.') || word.contains('e');
@@ -955,6 +967,13 @@ fn file_access_rule_is_seen_failing() {
     let rule = |text| count(file_access_problems, "src/a.rs", text);
     assert_eq!(rule("use std::fs::File; use std::{mem, fs};"), 2);
     assert_eq!(rule("use std::path::Path; // std::fs"), 0);
+}
+
+#[test]
+fn actions_rule_is_seen_failing() {
+    let rule = |text: &str| count(action_problems, ".github/workflows/a.yml", text);
+    assert_eq!(rule("- uses: actions/checkout@v4"), 1);
+    assert_eq!(rule(&format!("- uses: actions/checkout@{} # v4.2.2", "0".repeat(40))), 0);
 }
 
 #[test]
