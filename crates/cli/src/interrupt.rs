@@ -23,12 +23,21 @@ pub fn listen() -> Result<(), Failure> {
         SIGINT | SIGTERM | SIGHUP => interrupt(),
         _ => INTERRUPT.store(true, Ordering::Relaxed),
     };
-    let signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, libc::SIGXCPU]);
-    let heard = signals.and_then(|mut signals| {
+    let hangup = Some(SIGHUP).filter(|signal| !is_ignored(*signal));
+    let signals = [SIGINT, SIGTERM, SIGUSR1, SIGUSR2, libc::SIGXCPU].into_iter().chain(hangup);
+    let heard = signal_hook::iterator::Signals::new(signals).and_then(|mut signals| {
         let listener = std::thread::Builder::new().name("signals".to_owned());
         listener.spawn(move || signals.forever().for_each(answer)).map(drop)
     });
     heard.map_err(unheard).or_fail(FAILED)
+}
+
+/// Whether the caller has switched a signal off, as `nohup` does; no where the system does not say so.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & (1 << (signal - 1)) != 0)
 }
 
 /// From now on an interrupt requests an end with a checkpoint.

@@ -194,6 +194,26 @@ fn blocks_that_overlap_are_a_warning_and_numbers_of_the_summary() {
     assert_eq!(answer.stderr.matches("blocks 0 and 1 overlap by ").count(), 1, "{answer:?}");
 }
 
+/// The end of a terminal is no end of a run that was begun with `nohup`.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_that_the_caller_has_switched_off_stays_off() {
+    let place = Place::with(&long_rest());
+    let run = format!("trap '' HUP; exec {} run case.toml -o out --quiet", env!("CARGO_BIN_EXE_enmm"));
+    let mut child = Command::new("sh").args(["-c", &run]).current_dir(place.path(".")).spawn().expect("sh runs");
+    let begin = Instant::now();
+    while fs::read_to_string(place.path("out/history.csv")).map_or(0, |text| text.lines().count()) < 50 {
+        assert!(begin.elapsed() < Duration::from_secs(60), "no rows");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let send = |signal: &str| Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
+    assert!(send("-HUP").success());
+    std::thread::sleep(Duration::from_millis(100));
+    assert!(send("-TERM").success());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    assert_eq!(json(&place.path("out/summary.json"))["status"], "interrupted", "one signal alone was heard");
+}
+
 /// Batch systems send such signals before they kill.
 #[cfg(unix)]
 #[test]

@@ -7,7 +7,7 @@ from collections.abc import Generator, Mapping
 from contextlib import contextmanager, suppress
 from ctypes import byref, c_double, c_int32, c_size_t, c_uint32, c_void_p
 from pathlib import Path
-from typing import Any, NamedTuple, Self, SupportsIndex
+from typing import TYPE_CHECKING, NamedTuple, Self, SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,9 @@ from ._parameters import Parameters
 from ._ports import Port, Ports
 from ._types import Event, Inputs, PortInputs
 from ._values import Energies, MonitorState, StartInfo, StepInfo, Totals
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 BLOCK_DTYPE = dtype_of(_abi.BlockState)
 """Fields of `Model.blocks`, those of `enmm_block_state`."""
@@ -586,7 +589,7 @@ class Model(Closing):
         count = self._core.get("enmm_block_hole_count", c_size_t, of)
         return [self._core.points("enmm_get_block_hole", of, hole) for hole in range(count)]
 
-    def plot(self, ax: Any = None) -> Any:
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draws the blocks where they are now by matplotlib, in the colour of their displacement; returns the axes."""
         return _plots.model(self, ax)
 

@@ -7,7 +7,7 @@ import weakref
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from . import _html, _places, _plots
 from ._closing import Closing
@@ -18,6 +18,9 @@ from ._options import path as path_of
 from ._program import in_python
 from ._progress import in_notebook
 from ._table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def _keep(folder: Path) -> None:
@@ -179,11 +182,11 @@ class Result(Directory):
         self,
         field: str = "displacement",
         frame: int = -1,
-        ax: Any = None,
+        ax: "Axes | None" = None,
         *,
         scale: float = 1.0,
         joints: bool = True,
-    ) -> Any:
+    ) -> "Axes":
         """Draws the elements of a frame, coloured by a field, with the joints, by matplotlib; returns the axes.
 
         `field` is one of `Frame.cell_data` or `Frame.point_data`; of a vector its length. `scale` multiplies the
@@ -191,7 +194,7 @@ class Result(Directory):
         """
         return _plots.frame(self.frames[frame], field, ax, number("scale", scale), joints)
 
-    def plot_history(self, *names: str, ax: Any = None) -> Any:
+    def plot_history(self, *names: str, ax: "Axes | None" = None) -> "Axes":
         """Draws columns of the history over time, without names all displacements; returns the axes of matplotlib."""
         return _plots.history(self.history, names, ax)
 
@@ -355,7 +358,7 @@ class Fos(Directory):
         doubt: str | None = self.record.get("doubt")
         return doubt
 
-    def plot(self, ax: Any = None) -> Any:
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draws displacement over the factor of every trial by matplotlib; returns the axes."""
         return _plots.trials(self, ax)
 

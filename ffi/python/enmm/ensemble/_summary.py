@@ -8,7 +8,7 @@ import math
 import os
 from pathlib import Path
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from .._errors import invalid
 from .._table import Table
 from ._store import Row
 from ._variables import Distribution, Variable
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Interval(NamedTuple):
@@ -146,7 +149,7 @@ class Ensemble:
         writer.writerows(zip(*(column.tolist() for column in self.table.values()), strict=True))
         return text.getvalue()
 
-    def plot(self, ax: Any = None) -> Any:
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draws the histogram of the output and its limit by matplotlib; returns the axes."""
         ax = _plots.axes(ax)
         ax.hist(self.values, bins="auto", color="tab:blue", alpha=0.7)
