@@ -443,6 +443,8 @@ INTERRUPTED = """
 import os, signal, sys, threading, time
 import enmm
 
+# Shells switch the signal off for what they begin in the background.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 with enmm.Model.from_file(sys.argv[1]) as model:
     model.start()
     before, sent = model.serialize(), []

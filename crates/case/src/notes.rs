@@ -1,6 +1,7 @@
 //! Notes of a case that act on nothing: cover of the report, description of an FMU.
 
-use crate::keys::keys;
+use crate::keys::unit::NUMBER;
+use crate::keys::{Range, keys};
 
 keys! {
     /// Project that the report of `enmm report` names; nothing of this acts on the model, or on what is stored of it.
@@ -50,6 +51,6 @@ keys! {
         /// Ids of blocks whose states are outputs one by one, as `block_3.displacement_x`, for importers that have no
         /// arrays.
         #[serde(skip_serializing_if = "Vec::is_empty")]
-        pub blocks: Vec<u32>,
+        pub blocks: Vec<u32> => Range::from(0.0).to(1e7).of(NUMBER).hint("pictures of blocks show their ids"),
     }
 }

@@ -233,6 +233,7 @@ fn fmu_notes(key: &Key, notes: &FmuNotes) -> Check {
             return fail(&key.field(name), "is empty, must say something; leave it out for what holds without it");
         }
     }
+    notes.check(key)?;
     for (k, block) in notes.blocks.iter().enumerate() {
         if notes.blocks[..k].contains(block) {
             return fail(&key.field("blocks").index(k), format!("names block {block} again; name each block once"));
