@@ -38,7 +38,7 @@ impl ReportNotes {
 }
 
 keys! {
-    /// What the description of an FMU says: whose the case is, and which blocks have outputs of their own; nothing of
+    /// Notes for the description of an FMU: whose the case is, and blocks that have outputs of their own; nothing of
     /// this acts on the model.
     #[derive(Eq)]
     pub default struct FmuNotes {

@@ -258,7 +258,7 @@ pub enum ReductionError {
         time: f64,
         /// Unbalanced ratio then.
         unbalanced: f64,
-        /// What to do.
+        /// Remedy.
         remedy: &'static str,
     },
     /// A numerical failure before the trials.

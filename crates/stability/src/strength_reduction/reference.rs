@@ -30,7 +30,7 @@ pub struct Rest {
     pub warnings: Vec<String>,
 }
 
-/// What to do about a slope that does not come to rest.
+/// Remedy for a slope that does not come to rest.
 fn remedy(case: &Case) -> &'static str {
     let weightless = [case.gravity.x, case.gravity.y] == [0.0; 2];
     if weightless && case.loads.is_empty() && case.in_situ.is_none() {

@@ -144,7 +144,7 @@ fn apart(lower: Factor, upper: Factor) -> Option<f64> {
     }
 }
 
-/// What to do where the bounds are far apart.
+/// Remedy where the bounds are far apart.
 fn warning(lower: Factor, upper: Factor) -> Option<String> {
     let share = apart(lower, upper).filter(|share| *share > APART)?;
     Some(format!(
