@@ -41,7 +41,19 @@ def names_of(tree: ast.Module) -> list[str]:
 def parsed(module: str) -> ast.Module:
     place = PACKAGE / module
     file = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
-    return ast.parse(file.read_text(encoding="utf-8"))
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg):
+            node.annotation = unquoted(node.annotation)
+        elif isinstance(node, ast.FunctionDef):
+            node.returns = unquoted(node.returns)
+    return tree
+
+
+def unquoted(kind: ast.expr | None) -> ast.expr | None:
+    """A type without the quotes of names that only type checkers import."""
+    is_text = isinstance(kind, ast.Constant) and isinstance(kind.value, str)
+    return ast.parse(kind.value, mode="eval").body if is_text else kind
 
 
 def documented(body: list[ast.stmt]) -> Iterator[tuple[ast.stmt, str]]:

@@ -32,7 +32,7 @@ const FLOORS: [&[&str]; 9] = [
     &["enmm-picture", "enmm-report"],
     &["enmm-record"],
     &["enmm-run", "enmm-capi", "enmm-fmi"],
-    &["enmm-verification", "enmm-fmi2", "enmm-fmi3"],
+    &["enmm-verification", "enmm-fmu"],
     &["enmm-cli"],
     &["enmm-fuzz", "enmm-peers", "xtask"],
 ];

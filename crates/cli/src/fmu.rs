@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Version of the standard.
     #[arg(long, value_enum, default_value = "3")]
     fmi: Version,
-    /// Library of another platform to pack as well, such as win64=enmm_fmi3.dll; may be repeated. Names are those of
+    /// Library of another platform to pack as well, such as win64=enmm_fmu.dll; may be repeated. Names are those of
     /// FMI 2 or FMI 3; a library for this platform replaces the one beside the program.
     #[arg(long, value_name = "PLATFORM=PATH")]
     library: Vec<String>,
@@ -95,7 +95,7 @@ fn packed(arguments: &Arguments, version: table::Version, output: &Path) -> Resu
 fn own(version: table::Version) -> Result<(PathBuf, Library), Failure> {
     let program = std::env::current_exe();
     let program = program.map_err(|error| format!("cannot find this program ({error})")).or_fail(FAILED)?;
-    let path = library::find(version, &program).or_fail(BAD_INPUT)?;
+    let path = library::find(&program).or_fail(BAD_INPUT)?;
     let unreadable = |error| format!("{}: cannot read the library ({error})", path.display());
     let bytes = read_input(&path).map_err(unreadable).or_fail(BAD_INPUT)?;
     Ok((path, Library::of_this_system(version, bytes)))
@@ -106,7 +106,7 @@ fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), Fai
     let wrong = |reason: String| Failure::new(format!("--library {given}: {reason}"), BAD_INPUT);
     let (platform, path) = given
         .split_once('=')
-        .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm_fmi3.dll".to_owned()))?;
+        .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm_fmu.dll".to_owned()))?;
     let path = PathBuf::from(path);
     let bytes = read_input(&path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
     let library = Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))?;

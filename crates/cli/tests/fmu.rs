@@ -74,7 +74,7 @@ fn a_program_without_libraries_says_where_it_looked() {
     let output = run(&program, empty.path(), &[example().to_str().unwrap()]);
     let error = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("enmm_fmi3") && error.contains("looked in") && error.contains("cargo build"), "{error}");
+    assert!(error.contains("enmm_fmu") && error.contains("looked in") && error.contains("cargo build"), "{error}");
     assert!(is_empty(empty.path()));
 }
 
@@ -110,8 +110,8 @@ fn libraries_of_other_platforms_are_packed_beside_that_of_this_system() {
     let folder = tempfile::tempdir().unwrap();
     let case = example();
     let case = case.to_str().unwrap();
-    std::fs::write(folder.path().join("enmm_fmi3.dll"), windows_library()).unwrap();
-    let output = enmm(folder.path(), &[case, "--library", "win64=enmm_fmi3.dll", "-o", "both.fmu"]);
+    std::fs::write(folder.path().join("enmm_fmu.dll"), windows_library()).unwrap();
+    let output = enmm(folder.path(), &[case, "--library", "win64=enmm_fmu.dll", "-o", "both.fmu"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let fmu = std::fs::read(folder.path().join("both.fmu")).unwrap();
     let own = enmm_fmi::library::platform(enmm_fmi::table::Version::Three);

@@ -8,7 +8,7 @@ use std::process::Command;
 use serde_json::{Value, json};
 
 /// Packages whose libraries and programs leave the repository.
-const SHIPPED: [&str; 4] = ["enmm-cli", "enmm-capi", "enmm-fmi2", "enmm-fmi3"];
+const SHIPPED: [&str; 3] = ["enmm-cli", "enmm-capi", "enmm-fmu"];
 /// Platforms that they are built for.
 const TARGETS: [&str; 5] = [
     "x86_64-unknown-linux-gnu",

@@ -1,4 +1,4 @@
-//! Where the shared library of a version is.
+//! Where the shared library of FMUs is.
 
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
@@ -8,45 +8,35 @@ use crate::table::Version;
 /// No library where it is looked for.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "cannot find {name}, which the FMU needs; looked in {searched}: build it with `cargo build --release -p {package}` \
+    "cannot find {name}, which the FMU needs; looked in {searched}: build it with `cargo build --release -p enmm-fmu` \
      in the sources, or copy it beside the program"
 )]
 pub struct LibraryMissing {
     name: String,
-    package: &'static str,
     searched: String,
 }
 
-/// Name of the package, and of the library in its file name.
-fn package(version: Version) -> (&'static str, &'static str) {
-    match version {
-        Version::Two => ("enmm-fmi2", "enmm_fmi2"),
-        Version::Three => ("enmm-fmi3", "enmm_fmi3"),
-    }
+/// File name of the library on this system.
+pub fn file_name() -> String {
+    format!("{DLL_PREFIX}enmm_fmu{DLL_SUFFIX}")
 }
 
-/// File name of the library of a version on this system.
-pub fn file_name(version: Version) -> String {
-    format!("{DLL_PREFIX}{}{DLL_SUFFIX}", package(version).1)
-}
-
-/// Finds the library of a version for the program at `program`: beside it, in `deps` there, or in `../lib`. Of the
+/// Finds the library for the program at `program`: beside it, in `deps` there, or in `../lib`. Of the
 /// first two the newer is taken: cargo does not always renew both.
 ///
 /// # Errors
 /// When there is none, with the folders that were searched.
-pub fn find(version: Version, program: &Path) -> Result<PathBuf, LibraryMissing> {
+pub fn find(program: &Path) -> Result<PathBuf, LibraryMissing> {
     let folder = program.parent().unwrap_or(Path::new(""));
-    let name = file_name(version);
+    let name = file_name();
     let folders = [folder.to_owned(), folder.join("deps"), folder.parent().unwrap_or(folder).join("lib")];
     let [beside, deps, installed] = folders.each_ref().map(|folder| folder.join(&name));
     let changed = |path: &Path| path.metadata().and_then(|metadata| metadata.modified()).ok();
     let newest = if changed(&deps) > changed(&beside) { deps } else { beside };
-    [newest, installed].into_iter().find(|path| path.is_file()).ok_or_else(|| LibraryMissing {
-        name,
-        package: package(version).0,
-        searched: folders.map(|folder| folder.display().to_string()).join(", "),
-    })
+    [newest, installed]
+        .into_iter()
+        .find(|path| path.is_file())
+        .ok_or_else(|| LibraryMissing { name, searched: folders.map(|folder| folder.display().to_string()).join(", ") })
 }
 
 /// Folder of an FMU, below `binaries`, for libraries of this system.

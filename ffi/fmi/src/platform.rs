@@ -70,14 +70,12 @@ pub enum NotALibrary {
         wanted: String,
     },
     /// The library lacks the entry points of the version.
-    #[error("has no entry point {entry}: an FMU of FMI {number} needs the library `{package}` of that platform")]
+    #[error("has no entry point {entry}: an FMU of FMI {number} needs the library `enmm-fmu` of that platform")]
     Entry {
         /// Entry point that it must have.
         entry: &'static str,
         /// Version of the standard.
         number: u8,
-        /// Package whose library has it.
-        package: &'static str,
     },
 }
 
@@ -109,12 +107,12 @@ impl Library {
             found: found.iter().map(|platform| platform.fmi3).collect::<Vec<_>>().join(" and "),
             wanted: name.to_owned(),
         })?;
-        let (number, entry, package, folder) = match version {
-            Version::Two => (2, "fmi2DoStep", "enmm-fmi2", platform.fmi2),
-            Version::Three => (3, "fmi3DoStep", "enmm-fmi3", platform.fmi3),
+        let (number, entry, folder) = match version {
+            Version::Two => (2, "fmi2DoStep", platform.fmi2),
+            Version::Three => (3, "fmi3DoStep", platform.fmi3),
         };
         if !bytes.windows(entry.len()).any(|part| part == entry.as_bytes()) {
-            return Err(NotALibrary::Entry { entry, number, package });
+            return Err(NotALibrary::Entry { entry, number });
         }
         Ok(Self { folder: folder.to_owned(), suffix: platform.suffix, bytes })
     }

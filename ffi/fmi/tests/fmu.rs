@@ -332,25 +332,22 @@ fn the_library_is_found_beside_the_program_and_the_newer_one_wins() {
     let folder = tempfile::tempdir().unwrap();
     let bin = folder.path().join("bin");
     let program = bin.join("enmm");
-    for version in VERSIONS {
-        let name = library::file_name(version);
-        let error = library::find(version, &program).unwrap_err().to_string();
-        let package = if version == Version::Two { "-p enmm-fmi2" } else { "-p enmm-fmi3" };
-        let told = [name.as_str(), package, &bin.display().to_string(), "deps", "lib", "cargo build --release"];
-        assert!(told.iter().all(|word| error.contains(word)), "{error}");
-        let places = ["lib", "bin/deps", "bin"].map(|place| folder.path().join(place).join(&name));
-        for place in &places {
-            std::fs::create_dir_all(place.parent().unwrap()).unwrap();
-            std::fs::write(place, "x").unwrap();
-            let now = std::time::SystemTime::now() + std::time::Duration::from_secs(9);
-            let file = std::fs::File::options().write(true).open(place).unwrap();
-            file.set_modified(if place.ends_with("bin") { now } else { std::time::UNIX_EPOCH }).unwrap();
-            assert_eq!(&library::find(version, &program).unwrap(), place);
-        }
-        let [_, deps, _] = &places;
-        std::fs::File::options().write(true).open(deps).unwrap().set_modified(std::time::SystemTime::now()).unwrap();
-        assert_eq!(&library::find(version, &program).unwrap(), deps);
+    let name = library::file_name();
+    let error = library::find(&program).unwrap_err().to_string();
+    let told = [name.as_str(), "-p enmm-fmu", &bin.display().to_string(), "deps", "lib", "cargo build --release"];
+    assert!(told.iter().all(|word| error.contains(word)), "{error}");
+    let places = ["lib", "bin/deps", "bin"].map(|place| folder.path().join(place).join(&name));
+    for place in &places {
+        std::fs::create_dir_all(place.parent().unwrap()).unwrap();
+        std::fs::write(place, "x").unwrap();
+        let now = std::time::SystemTime::now() + std::time::Duration::from_secs(9);
+        let file = std::fs::File::options().write(true).open(place).unwrap();
+        file.set_modified(if place.ends_with("bin") { now } else { std::time::UNIX_EPOCH }).unwrap();
+        assert_eq!(&library::find(&program).unwrap(), place);
     }
+    let [_, deps, _] = &places;
+    std::fs::File::options().write(true).open(deps).unwrap().set_modified(std::time::SystemTime::now()).unwrap();
+    assert_eq!(&library::find(&program).unwrap(), deps);
 }
 
 /// Promise of the descriptions by `dependencies=""`.

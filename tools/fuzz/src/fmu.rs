@@ -7,8 +7,7 @@ use std::ptr::{null, null_mut};
 use enmm_fmi::log::Status;
 use enmm_fmi::resource;
 use enmm_fmi::table::{Causality, Table, Type, Version};
-use enmm_fmi2 as fmi2;
-use enmm_fmi3 as fmi3;
+use enmm_fmu::{fmi2, fmi3};
 use enmm_io::{LoadedCase, parse_case};
 
 use crate::buffer::Buffer;

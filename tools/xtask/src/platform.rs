@@ -20,7 +20,7 @@ pub struct Platform {
     strip: Option<&'static [&'static str]>,
     /// Folder of cargo in the target folder; empty for the target folder itself.
     cargo: &'static str,
-    /// Folder of the profile by which a cross build is made.
+    /// Folder of the profile by which whatever is shipped is built.
     profile: &'static str,
 }
 
@@ -32,8 +32,6 @@ pub struct Cross {
     pub compiler: &'static str,
     /// Variables of cargo for its builds.
     pub settings: &'static [(&'static str, &'static str)],
-    /// Packages whose libraries are built again as shared libraries alone: only then cargo drops what they do not use.
-    pub alone: &'static [&'static str],
     /// Debian's package of the C compiler.
     pub compiler_package: &'static str,
     /// The platform as `sysconfig.get_platform()` of its Python names it.
@@ -61,7 +59,7 @@ pub const HERE: Platform = Platform {
         _ => Some(&["strip", "--strip-unneeded"]),
     },
     cargo: "",
-    profile: "release",
+    profile: "ship",
 };
 
 /// This machine with the C library of Linux systems of 2018 and later: Debian 10, RHEL 8.
@@ -73,9 +71,7 @@ pub const WINDOWS: Platform = Platform {
     cross: Some(Cross {
         triple: "x86_64-pc-windows-gnu",
         compiler: "x86_64-w64-mingw32-gcc",
-        // Functions have no sections of their own in these objects, so that the linker alone drops none.
-        settings: &[("CARGO_PROFILE_RELEASE_LTO", "thin")],
-        alone: &["enmm-fmi2", "enmm-fmi3"],
+        settings: &[],
         compiler_package: "gcc-mingw-w64-x86-64-win32",
         wheel: "win-amd64",
         fmi: "x86_64-windows",
@@ -96,7 +92,6 @@ pub const AARCH64: Platform = Platform {
         triple: "aarch64-unknown-linux-gnu",
         compiler: "aarch64-linux-gnu-gcc",
         settings: &[("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", "aarch64-linux-gnu-gcc")],
-        alone: &[],
         compiler_package: "gcc-aarch64-linux-gnu libc6-dev-arm64-cross",
         wheel: "linux-aarch64",
         fmi: "aarch64-linux",
@@ -134,9 +129,9 @@ impl Platform {
         format!("enmm{}", self.program)
     }
 
-    /// File names of all that is shipped: program, C library, libraries of FMUs.
+    /// File names of all that is shipped: program, C library, library of FMUs.
     pub fn binaries(&self) -> Vec<String> {
-        let libraries = ["enmm", "enmm_fmi2", "enmm_fmi3"].map(|name| self.library(name));
+        let libraries = ["enmm", "enmm_fmu"].map(|name| self.library(name));
         libraries.into_iter().chain([self.program()]).collect()
     }
 
@@ -158,10 +153,7 @@ impl Platform {
 
     /// Folder in which cargo leaves what it builds.
     pub fn built(&self, repository: &Repository) -> PathBuf {
-        match self.triple() {
-            None => repository.built(),
-            Some(triple) => self.cargo(repository).join(triple).join(self.profile),
-        }
+        self.cargo(repository).join(self.triple().unwrap_or_default()).join(self.profile)
     }
 
     /// Folder of the binaries as they are shipped.
@@ -220,8 +212,8 @@ mod tests {
 
     #[test]
     fn files_have_the_names_of_their_platform() {
-        assert_eq!(WINDOWS.binaries(), ["enmm.dll", "enmm_fmi2.dll", "enmm_fmi3.dll", "enmm.exe"]);
-        assert_eq!(AARCH64.binaries(), ["libenmm.so", "libenmm_fmi2.so", "libenmm_fmi3.so", "enmm"]);
+        assert_eq!(WINDOWS.binaries(), ["enmm.dll", "enmm_fmu.dll", "enmm.exe"]);
+        assert_eq!(AARCH64.binaries(), ["libenmm.so", "libenmm_fmu.so", "enmm"]);
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub fn test(repository: &Repository, share: Share) -> Result<Counts, String> {
     pytest.env("ENMM_EXAMPLE", repository.program("examples/cosimulation"));
     if share != Share::Usual {
         install(repository);
-        pytest.env("ENMM_WHEEL", wheel::pack(repository, &HERE)?);
+        pytest.env("ENMM_WHEEL", wheel::pack(repository, &HERE, &repository.built())?);
     }
     let (lines, good) = repository::run_and_listen(&mut pytest)?;
     let counts = counts::of_pytest(&lines);

@@ -71,6 +71,11 @@ impl Repository {
 
     /// A command of cargo that builds what leaves this machine: paths of its folders are not written into binaries.
     pub fn cargo_to_ship(&self, args: &[&str]) -> Command {
+        self.to_ship(&self.cargo, args)
+    }
+
+    /// The same by a program that calls cargo.
+    pub fn to_ship(&self, program: impl AsRef<std::ffi::OsStr>, args: &[&str]) -> Command {
         let mut flags: Vec<String> =
             std::env::var("RUSTFLAGS").unwrap_or_default().split_whitespace().map(str::to_owned).collect();
         // Of several that fit, rustc takes the last.
@@ -78,8 +83,8 @@ impl Repository {
         flags.extend(
             self.build_folders().iter().zip(names).map(|(from, to)| format!("--remap-path-prefix={from}={to}")),
         );
-        let mut command = self.cargo(args);
-        command.env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"));
+        let mut command = self.command(program);
+        command.args(args).env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"));
         command
     }
 

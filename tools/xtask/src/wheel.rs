@@ -1,4 +1,4 @@
-//! One wheel for a platform: package, library, program and the libraries that `enmm fmu` packs.
+//! One wheel for a platform: package, library, program and the library that `enmm fmu` packs.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,10 +13,11 @@ use crate::zig;
 /// Folder of the package `enmm`.
 const PACKAGE: &str = "ffi/python";
 /// Packages of the binaries.
-const PACKAGES: [&str; 4] = ["enmm-cli", "enmm-capi", "enmm-fmi2", "enmm-fmi3"];
-/// Largest size (bytes): that of the program, the library and the two libraries of FMUs, all of which can record
-/// results, with a little room. What is larger holds something that does not belong there.
-const SIZE_MAX: u64 = 21_000_000;
+const PACKAGES: [&str; 3] = ["enmm-cli", "enmm-capi", "enmm-fmu"];
+/// Arguments of cargo for the library of FMUs.
+const LIBRARY_OF_FMUS: [&str; 5] = ["--package", "enmm-fmu", "--lib", "--crate-type", "cdylib"];
+/// Largest size (bytes). What is larger holds something that does not belong there.
+const SIZE_MAX: u64 = 15_000_000;
 
 /// Packages of the binaries, as cargo takes them.
 pub fn packages() -> impl Iterator<Item = &'static str> {
@@ -31,21 +32,10 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
     if let Some(cross) = &platform.cross {
         cross.missing().map_or(Ok(()), Err)?;
     }
-    let build = |cargo: &mut Command| {
-        let cross = platform.cross.iter();
-        let settings = cross.clone().flat_map(|cross| cross.settings.iter().copied());
-        repository::run(cargo.args(cross.flat_map(|cross| ["--target", cross.triple])).envs(settings))
-    };
-    let mut cargo = match (platform.glibc, platform.triple()) {
-        (Some(glibc), Some(triple)) => zig::build(repository, &triple, glibc)?,
-        _ => repository.cargo_to_ship(&["build", "--release"]),
-    };
-    build(cargo.args(packages()))?;
-    for name in platform.cross.iter().flat_map(|cross| cross.alone) {
-        let library = ["rustc", "--release", "--package", name, "--lib", "--crate-type", "cdylib"];
-        build(&mut repository.cargo_to_ship(&library))?;
-    }
-    let wheel = pack(repository, platform)?;
+    repository::run(to_ship(repository, platform, "build")?.args(packages()))?;
+    // Once more as a shared library alone: cargo optimizes it as a whole only then.
+    repository::run(to_ship(repository, platform, "rustc")?.args(LIBRARY_OF_FMUS))?;
+    let wheel = pack(repository, platform, &platform.built(repository))?;
     let shipped = platform.shipped(repository);
     for name in platform.binaries() {
         supply::no_build_paths(&shipped.join(name), &repository.build_folders())?;
@@ -57,13 +47,26 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
     Ok(wheel)
 }
 
-/// Makes the wheel of what has been built.
-pub fn pack(repository: &Repository, platform: &Platform) -> Result<PathBuf, String> {
+/// A command of cargo that builds for a platform what leaves this machine.
+fn to_ship(repository: &Repository, platform: &Platform, command: &str) -> Result<Command, String> {
+    let mut cargo = match (platform.glibc, platform.triple()) {
+        (Some(glibc), Some(triple)) => zig::cargo(repository, command, &triple, glibc)?,
+        _ => repository.cargo_to_ship(&[command]),
+    };
+    if let Some(cross) = &platform.cross {
+        cargo.args(["--target", cross.triple]).envs(cross.settings.iter().copied());
+    }
+    cargo.args(["--profile", "ship"]);
+    Ok(cargo)
+}
+
+/// Makes the wheel of what has been built in the folder `built`.
+pub fn pack(repository: &Repository, platform: &Platform, built: &Path) -> Result<PathBuf, String> {
     let (binaries, wheels) = (platform.shipped(repository), platform.wheels(repository));
     repository::fresh(binaries.clone())?;
     repository::fresh(wheels.clone())?;
     for name in platform.binaries() {
-        platform.strip(repository, &platform.built(repository).join(&name), &binaries.join(&name))?;
+        platform.strip(repository, &built.join(&name), &binaries.join(&name))?;
     }
     // The licences of all crates in the binaries, and the list of these crates.
     let made = parts::of(Some(&repository.root))?;

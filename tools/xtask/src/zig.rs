@@ -10,10 +10,11 @@ use crate::venv::{self, Packages};
 /// The subcommand of cargo, and zig.
 const TOOLS: [&str; 2] = ["cargo-zigbuild==0.24.1", "ziglang==0.17.1"];
 
-/// A build of cargo for a target with this version of the C library.
-pub fn build(repository: &Repository, triple: &str, glibc: &str) -> Result<Command, String> {
+/// The command `build` or `rustc` of cargo for a target with this version of the C library.
+pub fn cargo(repository: &Repository, command: &str, triple: &str, glibc: &str) -> Result<Command, String> {
     let tools = tools(repository)?;
-    let mut cargo = repository.cargo_to_ship(&["zigbuild", "--release", "--target", &format!("{triple}.{glibc}")]);
+    let mut cargo = repository.to_ship(tools.join("bin").join("cargo-zigbuild"), &[command]);
+    cargo.args(["--target", &format!("{triple}.{glibc}")]);
     let before = env::var_os("PATH").unwrap_or_default();
     let path = env::join_paths([tools.join("bin")].into_iter().chain(env::split_paths(&before)));
     cargo.env("PATH", path.map_err(|error| format!("PATH: {error}"))?);

@@ -38,7 +38,7 @@ pub fn install(repository: &Repository, prefix: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Installs the C library, with the links to it and the files that linkers take, and the libraries of FMUs.
+/// Installs the C library, with the links to it and the files that linkers take, and the library of FMUs.
 fn install_libraries(names: &Names, built: &Path, prefix: &Path) -> Result<(), String> {
     let [shared, place] = &names.shared;
     copy(&built.join(shared), &prefix.join(place))?;
@@ -50,10 +50,10 @@ fn install_libraries(names: &Names, built: &Path, prefix: &Path) -> Result<(), S
     for [name, place] in names.import.iter().chain([&names.archive]) {
         copy(&built.join(name), &prefix.join(place))?;
     }
-    for name in ["enmm_fmi2", "enmm_fmi3"].map(|name| HERE.library(name)) {
-        copy(&built.join(&name), &folder.join(&name))?;
-    }
-    Ok(())
+    let of_fmus = HERE.library("enmm_fmu");
+    copy(&built.join(&of_fmus), &folder.join(&of_fmus))?;
+    // Its older names, of a time when each version of FMI had a library.
+    ["enmm_fmi2", "enmm_fmi3"].iter().try_for_each(|name| link(&of_fmus, &folder.join(HERE.library(name))))
 }
 
 /// Links the name that linked programs look for to the C library of a platform in a folder.

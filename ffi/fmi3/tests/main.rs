@@ -1,8 +1,0 @@
-//! Tests of the entry points of FMI 3: exports, calls that each state allows, calls from callbacks and other threads.
-//! `python_tests/test_fmu_*.py` test how instances behave, for both versions at once.
-#![allow(clippy::undocumented_unsafe_blocks, reason = "tests are hosts, whose pointers are to variables of their own")]
-
-mod common;
-mod instances;
-mod meddling;
-mod symbols;

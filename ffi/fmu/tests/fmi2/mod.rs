@@ -1,0 +1,4 @@
+//! FMI 2.
+
+mod common;
+mod fmu;

@@ -1,0 +1,5 @@
+//! FMI 3.
+
+mod common;
+mod instances;
+mod meddling;
