@@ -7,6 +7,7 @@ mod looks;
 pub mod mechanism;
 mod observe;
 pub mod overlap;
+mod recut;
 mod rest;
 mod restless;
 pub mod settle;
@@ -18,7 +19,7 @@ mod tune;
 pub use enmm_case as case;
 pub use enmm_case::Case;
 
-pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
+pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};

@@ -1,6 +1,6 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::contact::{DetectionRule, SideId, VertexEdge};
 use crate::cover::BlockId;
@@ -8,10 +8,11 @@ use crate::geometry::Vector;
 use crate::state::{Drive, Event, EventKind, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport, Wanted};
 
-use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators, build};
+use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 use super::case::{Case, Invalid, Stage};
 use super::looks::Looks;
 use super::overlap::{self, Audit, Overlap};
+use super::recut::{self, Ground};
 
 /// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
 const RESIDUAL_MAX: f64 = 0.9;
@@ -22,7 +23,11 @@ const MOVED_MIN: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct Simulation {
     pub(super) case: Case,
-    pub(super) built: Built,
+    /// The model of each stage.
+    pub(super) grounds: Vec<Ground>,
+    /// That of the stage in progress.
+    pub(super) built: Arc<Built>,
+    pub(super) state: State,
     pub(super) workspace: Workspace,
     pub(super) regime: Regime,
     /// Looks of callers since the model last changed.
@@ -57,10 +62,12 @@ impl Simulation {
         integrators: &dyn Integrators,
         tell: &mut dyn FnMut(BuildStage),
     ) -> Result<Self, Invalid> {
-        let built = build(&case, integrators, tell)?;
+        let (grounds, state) = recut::grounds(&case, integrators, tell)?;
         let mut simulation = Self {
             case,
-            built,
+            built: grounds[0].built.clone(),
+            grounds,
+            state,
             workspace: Workspace::default(),
             regime: Regime::Dynamic { damping: 0.0 },
             looks: Looks::default(),
@@ -73,8 +80,9 @@ impl Simulation {
     /// The same with other constants of contact, for studies of what they do.
     #[must_use]
     pub fn with_detection(mut self, rule: DetectionRule) -> Self {
-        self.built.model.detection = rule;
-        self.built.state.found.forget();
+        recut::change(&mut self.grounds, |built| built.model.detection = rule);
+        self.built = self.grounds[self.state.stage as usize].built.clone();
+        self.state.found.forget();
         self.looks.forget();
         self
     }
@@ -96,7 +104,7 @@ impl Simulation {
 
     /// The state now.
     pub fn state(&self) -> &State {
-        &self.built.state
+        &self.state
     }
 
     /// Buffers of the last step: contacts and times.
@@ -106,7 +114,7 @@ impl Simulation {
 
     /// The stage in progress.
     pub fn stage(&self) -> &Stage {
-        &self.case.stages[self.built.state.stage as usize]
+        &self.case.stages[self.state.stage as usize]
     }
 
     /// Simulated time (s).
@@ -123,7 +131,7 @@ impl Simulation {
     /// Takes the displacements of later steps as small: they change gaps and forces, but the contacts, their normals,
     /// lengths and places stay those of the next step. A new stage or another state ends this.
     pub fn assume_small_displacements(&mut self) {
-        self.built.state.found.forget();
+        self.state.found.forget();
         self.workspace.selection.kept_gaps = Some(Vec::new());
     }
 
@@ -131,8 +139,8 @@ impl Simulation {
     pub fn arrest(&mut self) {
         self.looks.forget();
         let kinetic: f64 = self.model().covers.blocks().map(|b| self.rigid_motion_of(b).3).sum();
-        self.built.state.ledger.damping += kinetic;
-        self.built.state.velocity.fill(Vector::zeros());
+        self.state.ledger.damping += kinetic;
+        self.state.velocity.fill(Vector::zeros());
     }
 
     /// Leaves out the contacts of nodes of a block with a side, as often as there are pairs, in later steps. A new
@@ -140,14 +148,14 @@ impl Simulation {
     pub fn leave_out(&mut self, mut contacts: Vec<(BlockId, SideId)>) {
         contacts.sort_unstable();
         self.workspace.selection.left_out = contacts;
-        self.built.state.neighbours.forget();
-        self.built.state.found.forget();
+        self.state.neighbours.forget();
+        self.state.found.forget();
     }
 
     /// Inputs of the host, to be changed.
     pub fn drive(&mut self) -> &mut Drive {
         self.looks.report.take();
-        &mut self.built.state.drive
+        &mut self.state.drive
     }
 
     /// Internal steps that cover `seconds` of simulated time.
@@ -157,13 +165,13 @@ impl Simulation {
 
     /// Takes a state that this model had before, as from a checkpoint.
     pub fn restore(&mut self, state: State) {
-        self.built.state = state;
+        self.state = state;
         self.take_up();
     }
 
     /// Takes over another state of this model, as [`Simulation::restore`] does, into the memory of its own.
     pub fn return_to(&mut self, state: &State) {
-        self.built.state.clone_from(state);
+        self.state.clone_from(state);
         self.take_up();
     }
 
@@ -174,11 +182,32 @@ impl Simulation {
         self.take_up();
     }
 
-    /// Makes regime and buffers those of the state.
+    /// Makes model, regime and buffers those of the state.
     fn take_up(&mut self) {
         self.looks.forget();
-        self.regime = self.regime_of(self.built.state.stage as usize);
-        step::prepare(&self.built.model, &self.built.state, &mut self.workspace);
+        self.stand_on(self.grounds[self.state.stage as usize].built.clone());
+        self.regime = self.regime_of(self.state.stage as usize);
+        step::prepare(&self.built.model, &self.state, &mut self.workspace);
+    }
+
+    /// Makes a model that of the next step.
+    fn stand_on(&mut self, built: Arc<Built>) {
+        if !Arc::ptr_eq(&built, &self.built) {
+            let Workspace { serial, seconds, .. } = self.workspace;
+            self.workspace = Workspace { serial, seconds, ..Workspace::default() };
+            self.audit = OnceLock::new();
+            self.built = built;
+        }
+    }
+
+    /// Cuts the rock as a stage that begins does.
+    pub(super) fn cut(&mut self, stage: usize) {
+        let Ground { built, lineage } = self.grounds[stage].clone();
+        if let Some(lineage) = lineage {
+            let before = (&self.built.model, &self.state);
+            self.state = recut::carry(&lineage, before, &self.workspace.mass_matrix, &built.model);
+            self.stand_on(built);
+        }
     }
 
     /// Advances one internal step; `report` requests energies and the unbalanced ratio at its start. Every
@@ -199,9 +228,9 @@ impl Simulation {
         let is_due = wanted == Wanted::Report && self.rest_due();
         let is_small = self.workspace.selection.kept_gaps.is_some();
         let audits = self.state().step.is_multiple_of(overlap::EVERY) && !is_small;
-        let made = step::advance(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, wanted)?;
+        let made = step::advance(&self.built.model, self.regime, &mut self.state, &mut self.workspace, wanted)?;
         if is_due {
-            self.built.state.most_rest = self.most_rest_with(&made);
+            self.state.most_rest = self.most_rest_with(&made);
         }
         if audits {
             self.note_overlaps();
@@ -216,7 +245,7 @@ impl Simulation {
         let found = overlap::find(self, &mut suspects);
         self.workspace.suspects = suspects;
         let time = self.time();
-        let events = &mut self.built.state.events;
+        let events = &mut self.state.events;
         for Overlap { depth, blocks, .. } in found {
             events.overlap_max = events.overlap_max.max(depth);
             if let Err(place) = events.overlapped.binary_search(&blocks) {
@@ -239,7 +268,7 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn advance_part(&mut self, dt: f64, wanted: Wanted) -> Result<StepReport, StepError> {
         self.looks.forget();
-        step::advance_part(&self.built.model, self.regime, &mut self.built.state, &mut self.workspace, dt, wanted)
+        step::advance_part(&self.built.model, self.regime, &mut self.state, &mut self.workspace, dt, wanted)
     }
 
     /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances. They are worked out

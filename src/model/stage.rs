@@ -29,7 +29,7 @@ impl Simulation {
     /// # Errors
     /// A key of the stage that does not fit the model.
     pub fn next_stage(&mut self) -> Result<bool, Invalid> {
-        let next = self.built.state.stage as usize + 1;
+        let next = self.state.stage as usize + 1;
         if next >= self.case.stages.len() {
             return Ok(false);
         }
@@ -41,7 +41,7 @@ impl Simulation {
         let stage_case = &self.case.stages[stage];
         match stage_case.kind {
             StageKind::Dynamic => {
-                let damping = self.built.state.damping.unwrap_or_else(|| stage_case.damping_ratio());
+                let damping = self.state.damping.unwrap_or_else(|| stage_case.damping_ratio());
                 Regime::Dynamic { damping }
             }
             StageKind::Static => {
@@ -66,25 +66,27 @@ impl Simulation {
     pub(super) fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         self.looks.forget();
         let before = self.energies();
+        self.cut(stage);
         self.excavate(stage)?;
-        change_laws(&self.case, stage, &mut self.built.state.laws, &mut self.built.state.law_switch);
+        change_laws(&self.case, stage, &mut self.state.laws, &mut self.state.law_switch);
         self.change_fixities(stage);
         self.change_bolts(stage)?;
         self.change_water(stage);
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
-        let (model, state) = (&self.built.model, &mut self.built.state);
+        let (model, state) = (&self.built.model, &mut self.state);
         step::begin_stage(model, self.regime, state, stage as u32, start, at_rest);
         step::prepare(model, state, &mut self.workspace);
         let after = self.energies();
         let sum = |l: &Ledger| l.kinetic + l.strain + l.potential;
-        let ledger = &mut self.built.state.ledger;
+        let ledger = &mut self.state.ledger;
         ledger.baseline += if stage == 0 { sum(&after) } else { sum(&after) - sum(&before) };
         Ok(())
     }
 
     fn excavate(&mut self, stage: usize) -> Result<(), Invalid> {
-        let covers = &self.built.model.covers;
+        let built = self.built.clone();
+        let covers = &built.model.covers;
         let stage_case = &self.case.stages[stage];
         for (k, &point) in stage_case.excavate.iter().enumerate() {
             let element = covers.element_near(Point::from(point), self.built.noding.tolerance);
@@ -92,7 +94,7 @@ impl Simulation {
                 key: format!("stage[{stage}].excavate[{k}]"),
                 message: format!("there is no block at ({}, {}): choose a point inside one", point[0], point[1]),
             })?;
-            self.built.state.removed[block] = true;
+            self.state.removed[block] = true;
         }
         if let Some(region) = &stage_case.excavate_region {
             let region: Vec<Point> = region.iter().map(|p| Point::from(*p)).collect();
@@ -104,7 +106,7 @@ impl Simulation {
                     message: "the region holds no block's centroid: enlarge it".into(),
                 });
             }
-            blocks.into_iter().for_each(|b| self.built.state.removed[b] = true);
+            blocks.into_iter().for_each(|b| self.state.removed[b] = true);
         }
         Ok(())
     }
@@ -121,13 +123,13 @@ impl Simulation {
         let Some(water) = self.built.model.water.as_ref().filter(|_| self.case.stages[stage].water.is_some()) else {
             return;
         };
-        let (level, drive) = (water.surfaces[stage].level, &mut self.built.state.drive);
+        let (level, drive) = (water.surfaces[stage].level, &mut self.state.drive);
         (drive.from.water_level, drive.to.water_level) = (level, level);
     }
 
     fn change_fixities(&mut self, stage: usize) {
         let stage_case = &self.case.stages[stage];
-        let (model, state) = (&self.built.model, &mut self.built.state);
+        let (model, state) = (&self.built.model, &mut self.state);
         for (k, fixity) in model.fixities.iter().enumerate() {
             let Some(name) = &fixity.name else { continue };
             if stage_case.free.contains(name) {
@@ -145,7 +147,7 @@ impl Simulation {
 
     /// Installs the bolts of a stage, and those of the start in the first one; bars in blocks that are gone go as well.
     fn change_bolts(&mut self, stage: usize) -> Result<(), Invalid> {
-        let (model, state) = (&self.built.model, &mut self.built.state);
+        let (model, state) = (&self.built.model, &mut self.state);
         let install = &self.case.stages[stage].install;
         for (segment, bolt) in model.bolts.iter().zip(&mut state.bolts) {
             let name = self.case.bolts[segment.bolt as usize].name.as_ref();

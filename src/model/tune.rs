@@ -31,8 +31,8 @@ impl Simulation {
     /// Gives a parameter another value, from the next step on and until a stage of the case changes it.
     pub fn tune(&mut self, what: Tunable, value: f64) {
         self.looks.forget();
-        tune(&self.built.model, &mut self.built.state, what, value);
-        self.regime = self.regime_of(self.built.state.stage as usize);
+        tune(&self.built.model, &mut self.state, what, value);
+        self.regime = self.regime_of(self.state.stage as usize);
     }
 
     /// Gives a state of this model, or of one that differs from it in parameters alone, the parameters that the case

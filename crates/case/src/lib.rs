@@ -63,7 +63,7 @@ pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution
 pub use record::BaseMotionKind;
 pub use rock::{Plane, Rock};
 pub use solver::{CornerContacts, Integrator, Newmark, Solver};
-pub use stage::{LawChange, LawSwitch, Stage, StageKind};
+pub use stage::{LawChange, LawSwitch, Stage, StageCut, StageKind};
 pub use water::{Water, WaterSurface};
 
 /// A closed or open list of points (m).

@@ -50,6 +50,10 @@ keys! {
         pub excavate: PointList => PLACE,
         /// Polygon (m): the blocks whose reference centroid lies inside are removed.
         pub excavate_region: Option<PointList> => PLACE,
+        /// Lines along which the rock is cut at its start: joints, or the borders of what it excavates. They need not be
+        /// drawn before, and carry the stress of the rock until their law gives way.
+        #[serde(default, rename = "cut", skip_serializing_if = "Vec::is_empty")]
+        pub cuts: Vec<StageCut>,
         /// Values of joint laws that change.
         #[serde(default, rename = "law")]
         pub law_changes: Vec<LawChange>,
@@ -85,6 +89,16 @@ impl Stage {
     /// Damping ratio of a dynamic stage: 0.1 when it names none.
     pub fn damping_ratio(&self) -> f64 {
         self.damping.unwrap_or(0.1)
+    }
+}
+
+keys! {
+    /// A line along which a stage cuts the rock: a joint from then on.
+    pub struct StageCut {
+        /// At least two points (m).
+        pub points: PointList => PLACE,
+        /// Joint law by name.
+        pub law: String,
     }
 }
 

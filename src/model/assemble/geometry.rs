@@ -7,6 +7,7 @@ use crate::geometry::loops::{validate_holes, validate_loop};
 use crate::geometry::{Arrangement, GeometryError, Label, Point, Segment, TraceId, arrange_within, polygon};
 use crate::model::case::{Case, Invalid};
 
+use super::cuts::Cut;
 use super::ends::{self, TraceEnd};
 use super::joints::{Joints, joints};
 use super::memory::Demand;
@@ -29,8 +30,9 @@ fn invalid(key: &str) -> impl FnOnce(GeometryError) -> Invalid + '_ {
     move |error| Invalid { key: key.into(), message: error.to_string() }
 }
 
-/// Arranges outlines, joints and mesh of a case.
-pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Result<Plane, Invalid> {
+/// Arranges outlines, joints, mesh and cuts of a case. Cuts come after all others, so that what was there before keeps
+/// its place and its number.
+pub(super) fn arrange_case(case: &Case, cuts: &[Cut], tell: &mut dyn FnMut(BuildStage)) -> Result<Plane, Invalid> {
     tell(BuildStage::Joints);
     let loops = Loops::read(case)?;
     let (low, high) = loops.bounds();
@@ -42,16 +44,17 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let tolerance = case.domain.snap_tolerance.unwrap_or(1e-6 * (high - low).norm());
     let angle = case.mesh.angle_deg.to_radians();
     let mesh = RegularMesh::new(case.mesh.size, angle, Point::from(case.mesh.origin), low, high);
-    let arrange = |pieces: &mut dyn Iterator<Item = Segment>| {
+    let arrange = |pieces: &mut dyn Iterator<Item = Segment>, cuts: &[Segment]| {
         let mut segments = loops.segments();
         segments.extend(pieces);
         segments.reserve(3 * RegularMesh::cell_estimate(case.mesh.size, low, high) as usize);
         segments.extend(mesh.segments(low, high));
+        segments.extend(cuts);
         let arranged = arrange_within(&segments, tolerance, demand.edges_max());
         arranged.map_err(|error| demand.explain(&error))
     };
     // A fault of the cut itself is told of all pieces.
-    if let Some(Ok(some)) = Demand::sample(&pieces(&joints)).map(|some| arrange(&mut some.copied())) {
+    if let Some(Ok(some)) = Demand::sample(&pieces(&joints.traces, 0)).map(|some| arrange(&mut some.copied(), &[])) {
         demand.check_sample(&some)?;
     }
     let distances = ends::distances(case, (high - low).norm(), tolerance);
@@ -60,8 +63,12 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     let user_traces = joints.traces.len();
     let islands = loops.rock[1..].iter().map(|l| (l.iter().chain(&l[..1]).copied().collect(), joints.default_law));
     joints.traces.extend(islands);
+    let uncut = pieces(&joints.traces, 0);
+    let first_cut = joints.traces.len();
+    joints.traces.extend(cuts.iter().map(|cut| (cut.points.clone(), cut.law)));
     tell(BuildStage::Arrangement);
-    let arrangement = arrange(&mut pieces(&joints).into_iter())?;
+    let arrangement = arrange(&mut uncut.into_iter(), &pieces(&joints.traces[first_cut..], first_cut))?;
+    Cut::check(cuts, &arrangement.report, first_cut)?;
     demand.check_edges(&arrangement)?;
     let joined = cover::join_crumbs(arrangement, CrumbRule::below(case.mesh.least_block()));
     let (mut arrangement, crumbs) = joined.map_err(|error| demand.explain(&error))?;
@@ -71,9 +78,9 @@ pub(super) fn arrange_case(case: &Case, tell: &mut dyn FnMut(BuildStage)) -> Res
     Ok(Plane { mesh, arrangement, joints, ends, distances, crumbs })
 }
 
-/// The straight pieces of all traces.
-fn pieces(joints: &Joints) -> Vec<Segment> {
-    let traces = TraceId::all(joints.traces.len()).zip(&joints.traces);
+/// The straight pieces of traces, of which the first has a number.
+fn pieces(traces: &[(Vec<Point>, LawId)], first: usize) -> Vec<Segment> {
+    let traces = TraceId::range(first..first + traces.len()).zip(traces);
     let of = |(trace, (points, _)): (TraceId, &(Vec<Point>, LawId))| -> Vec<Segment> {
         points.windows(2).map(|p| segment(p[0], p[1], 0, Some(trace))).collect()
     };

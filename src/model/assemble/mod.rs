@@ -2,6 +2,7 @@
 
 mod bolts;
 mod bonds;
+mod cuts;
 mod ends;
 mod geometry;
 mod integrators;
@@ -33,6 +34,7 @@ use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, 
 use joints::Joints;
 use locator::Locator;
 
+pub use cuts::Cut;
 pub use ends::TraceEnd;
 pub use integrators::{ExplicitAlone, Integrators};
 pub use locked::locked_ends;
@@ -40,13 +42,12 @@ pub use sections::{Breaking, Bridge};
 pub use stage::BuildStage;
 pub use warnings::ignored_traces;
 
-/// A model as built: what is fixed, the state at its start, and the report of the build.
+/// A model as built: what is fixed, and the report of the build. A pure function of the case and of the cuts that
+/// stages have made.
 #[derive(Debug, Clone)]
 pub struct Built {
     /// Fixed part.
     pub model: Model,
-    /// State at the start.
-    pub state: State,
     /// Element and reference point of each monitor.
     pub monitors: Vec<(ElementId, Point)>,
     /// Report of the noder.
@@ -71,17 +72,23 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// Builds the model of a case; `tell` is called with every part of the build as it begins.
+/// Builds the model of a case as cuts leave it, and its state at the start; `tell` is called with every part of the
+/// build as it begins.
 ///
 /// # Errors
 /// The first key of the case that does not fit the model: integrator, geometry, references to positions without rock,
 /// memory.
-pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(BuildStage)) -> Result<Built, Invalid> {
+pub fn build(
+    case: &Case,
+    cuts: &[Cut],
+    integrators: &dyn Integrators,
+    tell: &mut dyn FnMut(BuildStage),
+) -> Result<(Built, State), Invalid> {
     enmm_lanes::requested().map_err(|message| Invalid { key: enmm_lanes::VARIABLE.to_owned(), message })?;
     case.validate()?;
     integrators.refusal(case).map_or(Ok(()), Err)?;
     let geometry::Plane { mesh, mut arrangement, joints, ends, distances, crumbs } =
-        geometry::arrange_case(case, tell)?;
+        geometry::arrange_case(case, cuts, tell)?;
     let noding = std::mem::take(&mut arrangement.report);
     let mut warnings = warnings::of_geometry(&noding, case, &joints);
     let mut notes = [case.reader_notes.clone(), warnings::notes(&noding, (&ends, &distances), &crumbs)].concat();
@@ -109,9 +116,8 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
     warnings.extend(warnings::of_values(case, &model, &positions));
     let (low, high) = polygon::bounds(&model.covers.polygons.points);
     warnings.extend(slips::of_values(case, low.y, high.y));
-    Ok(Built {
+    let built = Built {
         model,
-        state,
         monitors,
         noding,
         boundary_pieces: outlines.pieces.len(),
@@ -123,7 +129,8 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
         crumbs,
         notes,
         warnings,
-    })
+    };
+    Ok((built, state))
 }
 
 /// The boundary loops of a case's blocks, cut again: a model keeps them only as contact sees them.
@@ -131,7 +138,7 @@ pub fn build(case: &Case, integrators: &dyn Integrators, tell: &mut dyn FnMut(Bu
 /// # Errors
 /// As [`build`].
 pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
-    let geometry::Plane { mesh, arrangement, .. } = geometry::arrange_case(case, &mut |_| ())?;
+    let geometry::Plane { mesh, arrangement, .. } = geometry::arrange_case(case, &[], &mut |_| ())?;
     Ok(cover::cut(mesh, arrangement).1)
 }
 
@@ -159,6 +166,7 @@ fn model(
         block_frequency: block_frequencies(&covers, &rocks, &element_rock),
         pre_stress: pre_stresses(case, &covers),
         pre_stress_out: rock::pre_stresses_out(case, &covers, &element_rock),
+        labels: covers.blocks().map(BlockId::number).collect(),
         strengths: case.rocks.values().map(rock::yielding).collect(),
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),

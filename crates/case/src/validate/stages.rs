@@ -1,10 +1,10 @@
 //! Checks of stages: what fits the kind, and references to laws and fixities.
 
-use super::checks::{Names, region, unique};
+use super::checks::{Names, each, points, region, unique};
 use super::{joints, ports};
 use crate::key::{Check, Key, fail};
 use crate::keys::{Range, Rule};
-use crate::{Case, JointLaw, LawChange, LawSwitch, Stage, StageKind};
+use crate::{Case, Integrator, JointLaw, LawChange, LawSwitch, Stage, StageCut, StageKind};
 
 const RAMP: Rule = Stage::rule("ramp");
 
@@ -23,6 +23,7 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
         let key = key.index(i);
         validate_motion(&key, stage)?;
         stage.excavate_region.as_ref().map_or(Ok(()), |ring| region(&key.field("excavate_region"), ring))?;
+        each(&key.field("cut"), &stage.cuts, |key, cut| validate_cut(key, cut, case, &laws))?;
         validate_laws(&key, stage, case, &laws)?;
         validate_fixities(&key, stage, &fixes)?;
         validate_water(&key.field("water"), i, stage, case)?;
@@ -65,6 +66,21 @@ fn validate_water(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check 
         return fail(key, "needs [water], which says what the water reaches; add it with the surface at the start");
     }
     ports::validate_surface(key, surface)
+}
+
+fn validate_cut(key: &Key, cut: &StageCut, case: &Case, laws: &Names) -> Check {
+    cut.check(key)?;
+    points(&key.field("points"), &cut.points, 2, "a cut")?;
+    laws.must_hold(&key.field("law"), &cut.law)?;
+    // The explicit integrator alone can go on with other covers in the middle of a run.
+    match case.solver.integrator {
+        Integrator::Explicit => Ok(()),
+        Integrator::Implicit => fail(
+            key,
+            "is for solver.integrator = \"explicit\", and the case has \"implicit\"; use the explicit one, or draw the \
+             joint from the start",
+        ),
+    }
 }
 
 fn validate_laws(key: &Key, stage: &Stage, case: &Case, laws: &Names) -> Check {

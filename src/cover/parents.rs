@@ -1,0 +1,95 @@
+//! Where elements, covers and blocks come from when more cuts part the same rock on the same mesh.
+
+use crate::geometry::{Point, polygon};
+
+use super::covers::Covers;
+use super::{BlockId, CoverId, ElementId};
+
+/// For each element, cover and block of the finer covers that of the coarser ones which it was a part of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parents {
+    /// Of each element.
+    pub elements: Vec<ElementId>,
+    /// Of each physical cover.
+    pub covers: Vec<CoverId>,
+    /// Of each block.
+    pub blocks: Vec<BlockId>,
+}
+
+impl Parents {
+    /// Those of covers `fine` among covers `coarse` of the same mesh. If `fine` has not all cuts of `coarse`, a point
+    /// (m) near which one is missing.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn of(coarse: &Covers, fine: &Covers) -> Result<Self, Point> {
+        let place = |e: ElementId| fine.element_centroid[e];
+        let elements = fine.elements().map(|e| coarse.parent(fine, e).ok_or_else(|| place(e)));
+        let elements = elements.collect::<Result<Vec<ElementId>, Point>>()?;
+        let mut covers = vec![None; fine.cover_count()];
+        let mut blocks = vec![None; fine.block_count()];
+        for (e, &parent) in fine.elements().zip(&elements) {
+            let corners = fine.element_covers[e].iter().zip(coarse.element_covers[parent]);
+            let mut fits = takes(&mut blocks[fine.element_block[e]], coarse.element_block[parent]);
+            corners.for_each(|(&cover, parent)| fits &= takes(&mut covers[cover], parent));
+            if !fits {
+                return Err(place(e));
+            }
+        }
+        // Every cover and every block has an element.
+        let (covers, blocks) = (covers.into_iter().flatten().collect(), blocks.into_iter().flatten().collect());
+        Ok(Self { elements, covers, blocks })
+    }
+
+    /// Numbers that hosts see of the blocks `fine`, where those of the blocks `coarse` are `labels`: the part with the
+    /// reference point of a block keeps its number, others take the next free ones.
+    pub fn labels(&self, labels: &[u32], coarse: &Covers, fine: &Covers) -> Vec<u32> {
+        let mut own = vec![None; fine.block_count()];
+        for (block, heir) in coarse.blocks().zip(self.heirs(coarse, fine)) {
+            own[heir] = Some(labels[block]);
+        }
+        let mut next = labels.len() as u32..;
+        own.into_iter().map(|label| label.unwrap_or_else(|| next.next().unwrap_or_default())).collect()
+    }
+
+    /// The block `fine` that each block `coarse` goes on as: that with its reference point.
+    pub fn heirs(&self, coarse: &Covers, fine: &Covers) -> Vec<BlockId> {
+        let mut heirs = vec![None; coarse.block_count()];
+        for (block, &parent) in fine.blocks().zip(&self.blocks) {
+            heirs[parent].get_or_insert(block);
+        }
+        for block in coarse.blocks() {
+            let holder = fine.element_at(coarse.point_inside(block)).map(|e| fine.element_block[e]);
+            let holder = holder.filter(|&holder| self.blocks[holder] == block);
+            heirs[block] = holder.or(heirs[block]);
+        }
+        heirs.into_iter().flatten().collect()
+    }
+}
+
+impl Covers {
+    /// The element of which an element of finer covers is a part: that of the same triangle of the mesh and with the
+    /// same polygon, or else the one that holds a point inside.
+    fn parent(&self, fine: &Self, e: ElementId) -> Option<ElementId> {
+        let (triangle, centroid) = (fine.element_triangle[e], fine.element_centroid[e]);
+        let candidates = || self.around(centroid, 0.0).filter(|&c| self.element_triangle[c] == triangle);
+        let is_whole = |c: &ElementId| {
+            (self.element_centroid[*c] - centroid).norm() <= SAME * self.mesh.size
+                && (self.element_area[*c] / fine.element_area[e] - 1.0).abs() <= SAME
+        };
+        candidates().find(is_whole).or_else(|| {
+            let area = |t: &[Point; 3]| polygon::area(t);
+            let largest = polygon::triangles(fine.polygon(e)).into_iter().max_by(|a, b| area(a).total_cmp(&area(b)))?;
+            let inside = largest.iter().sum::<Point>() / 3.0;
+            candidates().find(|&c| polygon::contains(self.polygon(c), inside))
+        })
+    }
+}
+
+/// Gives a part its parent; whether it has no other.
+fn takes<T: Copy + PartialEq>(slot: &mut Option<T>, parent: T) -> bool {
+    *slot.get_or_insert(parent) == parent
+}
+
+/// Difference, relative to the mesh size and to the area, within which two elements are the same.
+const SAME: f64 = 1e-9;

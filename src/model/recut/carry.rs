@@ -1,0 +1,134 @@
+//! The state of a model as it goes on after a cut.
+
+use crate::contact::BoltState;
+use crate::cover::{BlockId, CoverId};
+use crate::geometry::Vector;
+use crate::mechanics::MassMatrix;
+use crate::state::{Drive, Events, Inputs, Model, State};
+use crate::step;
+
+use super::contacts::carry_contacts;
+use super::lineage::Lineage;
+
+/// The state after a cut of a model between two stages, whose blocks were free by `masses`. Displacements and
+/// velocities of all points stay, but for a spin that keeps the angular momentum of a block that has come apart.
+pub fn carry(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatrix, new: &Model) -> State {
+    let parents = &lineage.parents;
+    let mut state = was.clone();
+    state.displacement = part_of(&was.displacement, parents.covers.iter().map(|c| c.index()));
+    state.velocity = part_of(&was.velocity, parents.covers.iter().map(|c| c.index()));
+    state.removed = part_of(&was.removed, parents.blocks.iter().map(|b| b.index()));
+    state.support_force = part_of(&was.support_force, lineage.supports.iter().copied());
+    state.support_rest = part_of(&was.support_rest, lineage.supports.iter().copied());
+    if !was.plastic.is_empty() {
+        state.plastic = part_of(&was.plastic, parents.elements.iter().map(|e| e.index()));
+    }
+    state.sections = lineage.sections.iter().map(|section| section.and_then(|k| was.sections[k])).collect();
+    // The stage that begins takes its own.
+    state.stage_displacement.clear();
+    state.stage_force.clear();
+    state.neighbours.forget();
+    state.found.forget();
+    carry_events(lineage, &mut state.events, new);
+    carry_inputs(lineage, &mut state.drive);
+    carry_bolts(lineage, (old, was), new, &mut state);
+    keep_spin(lineage, (old, was), masses, new, &mut state);
+    carry_contacts(lineage, (old, was), new, &mut state);
+    state
+}
+
+/// What parts have of the whole that they were.
+fn part_of<T: Copy>(whole: &[T], parents: impl Iterator<Item = usize>) -> Vec<T> {
+    parents.map(|parent| whole[parent]).collect()
+}
+
+fn carry_events(lineage: &Lineage, events: &mut Events, new: &Model) {
+    let blocks = || lineage.parents.blocks.iter().map(|b| b.index());
+    for list in [&mut events.touching, &mut events.detached, &mut events.failed] {
+        *list = part_of(list, blocks());
+    }
+    let new_traces = new.trace_law.len() - lineage.traces;
+    let joints = lineage.traces..lineage.traces;
+    events.slipped.splice(joints, std::iter::repeat_n(false, new_traces));
+    if !events.bonded.is_empty() {
+        events.bonded.resize(new.trace_law.len(), false);
+    }
+    for pair in &mut events.overlapped {
+        *pair = pair.map(|block| lineage.heirs[block]);
+        pair.sort_unstable();
+    }
+    events.overlapped.sort_unstable();
+}
+
+/// Forces on a block go on to act on the part that keeps its number.
+fn carry_inputs(lineage: &Lineage, drive: &mut Drive) {
+    let blocks = lineage.parents.blocks.len();
+    let carry = |inputs: &mut Inputs| {
+        let mut force = vec![Vector::zeros(); blocks];
+        let mut moment = vec![0.0; blocks];
+        for (old, &heir) in lineage.heirs.iter().enumerate() {
+            (force[heir.index()], moment[heir.index()]) = (inputs.block_force[old], inputs.block_moment[old]);
+        }
+        (inputs.block_force, inputs.block_moment) = (force, moment);
+    };
+    carry(&mut drive.from);
+    carry(&mut drive.to);
+}
+
+/// A bar that a cut crosses begins to be stretched there.
+fn carry_bolts(lineage: &Lineage, (old, was): (&Model, &State), new: &Model, state: &mut State) {
+    let is_there = |bolt: u32| old.bolts.iter().zip(&was.bolts).any(|(of, bar)| of.bolt == bolt && bar.active);
+    let segments = new.bolts.iter().zip(&lineage.bolts);
+    state.bolts = segments
+        .map(|(segment, parent)| match parent {
+            Some(k) => was.bolts[*k],
+            None if is_there(segment.bolt) => {
+                let length = segment.span(&new.covers.star_position, &state.displacement).norm();
+                BoltState { active: true, broken: false, rest: length, natural: length, force: 0.0 }
+            }
+            None => BoltState::default(),
+        })
+        .collect();
+}
+
+/// Angular momentum of a block about the origin (kg·m²/s per metre), its centroid, and its spin (rad/s).
+fn angular(model: &Model, state: &State, block: BlockId) -> (f64, Vector) {
+    let masses = &model.mass_matrix;
+    let (centre, velocity, spin, _) = step::block_motion(model, state, masses, block);
+    (masses.total[block] * centre.perp(&velocity) + masses.polar[block] * spin, centre)
+}
+
+/// Gives the parts of each free block that has come apart one spin by which they have its angular momentum.
+fn keep_spin(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatrix, new: &Model, state: &mut State) {
+    let mut parts = vec![Vec::new(); old.covers.block_count()];
+    for (block, &parent) in new.covers.blocks().zip(&lineage.parents.blocks) {
+        parts[parent.index()].push(block);
+    }
+    for (parent, parts) in old.covers.blocks().zip(&parts) {
+        if parts.len() < 2 || !masses.is_free(parent) {
+            continue;
+        }
+        let now: Vec<_> = parts.iter().map(|&block| angular(new, state, block)).collect();
+        for (&block, (_, centre)) in parts.iter().zip(&now) {
+            turn(new, state, block, *centre, 1.0);
+        }
+        let of_unit: f64 = parts.iter().zip(&now).map(|(&block, now)| angular(new, state, block).0 - now.0).sum();
+        let missing = angular(old, was, parent).0 - now.iter().map(|now| now.0).sum::<f64>();
+        for (&block, (_, centre)) in parts.iter().zip(&now) {
+            let covers = CoverId::range(new.covers.covers_of(block));
+            let whole = covers.map(|i| was.velocity[lineage.parents.covers[i]]);
+            let range = new.covers.covers_of(block);
+            let whole: Vec<Vector> = whole.collect();
+            state.velocity[range].copy_from_slice(&whole);
+            turn(new, state, block, *centre, missing / of_unit);
+        }
+    }
+}
+
+/// Adds a spin (rad/s) about a centre to the velocities of a block.
+fn turn(model: &Model, state: &mut State, block: BlockId, centre: Vector, spin: f64) {
+    for i in CoverId::range(model.covers.covers_of(block)) {
+        let arm = model.covers.star_position[i] + state.displacement[i] - centre;
+        state.velocity[i] += Vector::new(-arm.y, arm.x) * spin;
+    }
+}

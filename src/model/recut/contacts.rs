@@ -1,0 +1,286 @@
+//! Contacts after a cut: those that it leaves alone go on as they were, others bear what was there before, and new
+//! faces bear the stress of the rock.
+
+use std::collections::BTreeMap;
+
+use crate::contact::{
+    BondHistory, Boundary, Closure, ContactHistory, ContactState, EdgeId, Meeting, NodeId, SectionId, SideId, Unloaded,
+    VertexEdge,
+};
+use crate::cover::BlockId;
+use crate::geometry::{Point, TraceId, Vector, segment};
+use crate::state::{Model, State};
+use crate::step::{self, Regime};
+
+use super::lineage::Lineage;
+
+/// Cosine above which the normals of two contacts are those of one face.
+const ONE_FACE: f64 = 0.9;
+
+/// What contacts share that one can go on for another: blocks before the cut of node and side, and joint.
+type Face = ([BlockId; 2], Option<TraceId>);
+
+/// A contact before the cut.
+struct Bearing {
+    contact: VertexEdge,
+    bond: BondHistory,
+    /// Where its node was in the reference configuration (m).
+    at: Point,
+}
+
+/// A contact after the cut that has forces (N/m) normal and shear of its own.
+struct Loaded {
+    history: ContactHistory,
+    bond: BondHistory,
+    /// Face whose whole force is kept, where it takes the place of others.
+    shares: Option<Face>,
+}
+
+/// Carries contacts and bonds over into a state whose displacements are there.
+pub fn carry_contacts(lineage: &Lineage, (old, was): (&Model, &State), new: &Model, state: &mut State) {
+    state.contacts.clear();
+    state.bonds.clear();
+    if was.contacts.is_empty() {
+        return;
+    }
+    let carry = Carry { lineage, old, was, new, before: Before::new(old, was) };
+    let softens = !was.bonds.is_empty();
+    (state.contacts, state.bonds) = carry.kept(softens);
+    let (_, ahead) = step::look_ahead(new, AT_REST, state, true);
+    let mut loaded: Vec<Loaded> = ahead.contacts.iter().map(|contact| carry.load(contact, state)).collect();
+    carry.keep_sums(&ahead.contacts, &mut loaded);
+    for (contact, loaded) in ahead.contacts.iter().zip(&mut loaded).filter(|(_, l)| l.shares.is_some()) {
+        settle(contact, new, &mut loaded.history);
+    }
+    state.contacts = loaded.iter().map(|loaded| loaded.history).collect();
+    if softens {
+        state.bonds = loaded.iter().map(|loaded| loaded.bond).collect();
+    }
+}
+
+/// The regime in which contacts are looked for: nothing depends on speeds.
+const AT_REST: Regime = Regime::Static { ramp: 0.0 };
+
+/// All contacts before the cut.
+struct Before {
+    faces: BTreeMap<Face, Vec<Bearing>>,
+    /// Gap (m) and stiffnesses (N/m per metre) of each.
+    springs: BTreeMap<(NodeId, SideId), (f64, [f64; 2])>,
+}
+
+impl Before {
+    fn new(old: &Model, was: &State) -> Self {
+        let mut state = was.clone();
+        // Forces that damp a stage find no contacts.
+        state.stage_displacement.clear();
+        state.stage_force.clear();
+        let (_, ahead) = step::look_ahead(old, AT_REST, &state, true);
+        let springs = ahead.contacts.iter().map(|c| ((c.history.node, c.history.side), (c.gap, c.stiffness)));
+        let springs = springs.collect();
+        let mut faces: BTreeMap<Face, Vec<Bearing>> = BTreeMap::new();
+        for contact in ahead.contacts.into_iter().filter(|contact| !contact.fresh) {
+            let key = |history: &ContactHistory| (history.node, history.side);
+            let Ok(k) = was.contacts.binary_search_by_key(&key(&contact.history), key) else { continue };
+            let bond = was.bonds.get(k).copied().unwrap_or_default();
+            let face = (contact.blocks(&old.boundary), trace(&old.boundary, &contact));
+            let at = old.boundary.reference[contact.point];
+            faces.entry(face).or_default().push(Bearing { contact, bond, at });
+        }
+        Self { faces, springs }
+    }
+}
+
+/// Joint of a contact: that of the edge, or else of the node.
+fn trace(boundary: &Boundary, contact: &VertexEdge) -> Option<TraceId> {
+    boundary.trace[contact.history.edge].or_else(|| boundary.node_trace(contact.history.node))
+}
+
+struct Carry<'a> {
+    lineage: &'a Lineage,
+    old: &'a Model,
+    was: &'a State,
+    new: &'a Model,
+    before: Before,
+}
+
+impl Carry<'_> {
+    /// Histories of contacts whose node and side the cut has left as they were, under their new numbers.
+    fn kept(&self, softens: bool) -> (Vec<ContactHistory>, Vec<BondHistory>) {
+        let nodes = inverse(&self.lineage.nodes, self.old.boundary.node_count(), NodeId::index);
+        let sides = inverse(&self.lineage.sides, self.old.boundary.sides.ends.len(), SideId::index);
+        let mut kept: Vec<(ContactHistory, BondHistory)> = Vec::new();
+        for (k, history) in self.was.contacts.iter().enumerate() {
+            let (node, side) = (nodes[history.node.index()], sides[history.side.index()]);
+            let Some((node, side)) = node.zip(side).map(|(n, s)| (NodeId::new(n), SideId::new(s))) else { continue };
+            let edge = self.edge_like(side, history.edge);
+            let bond = self.was.bonds.get(k).copied().unwrap_or_default();
+            kept.push((ContactHistory { node, side, edge, ..*history }, self.bond_of(bond, edge)));
+        }
+        kept.sort_by_key(|(history, _)| (history.node, history.side));
+        let (histories, bonds) = kept.into_iter().unzip();
+        (histories, if softens { bonds } else { Vec::new() })
+    }
+
+    /// The edge of a side on which the middle of an edge before the cut lies.
+    fn edge_like(&self, side: SideId, edge: EdgeId) -> EdgeId {
+        let (old, new) = (&self.old.boundary, &self.new.boundary);
+        let middle = (old.reference[edge] + old.reference[old.after(edge)]) * 0.5;
+        let [first, last] = new.sides.ends[side].map(|end| end.edge);
+        let all = std::iter::successors(Some(first), |&edge| (edge != last).then(|| new.after(edge)));
+        let distance =
+            |edge: &EdgeId| segment::distance(middle, new.reference[*edge], new.reference[new.after(*edge)]);
+        all.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(first)
+    }
+
+    /// A bond on an edge after the cut: it breaks with the part of its section that has the edge.
+    fn bond_of(&self, bond: BondHistory, edge: EdgeId) -> BondHistory {
+        let is_part = |id: &SectionId| {
+            self.lineage.sections[id.index()] == bond.section.map(|section| section.index())
+        };
+        let section = bond.section.and_then(|_| self.new.sections.of(edge)).filter(is_part);
+        BondHistory { section, ..bond }
+    }
+
+    /// A contact after the cut with what it bears.
+    fn load(&self, contact: &VertexEdge, state: &State) -> Loaded {
+        let key = |history: &ContactHistory| (history.node, history.side);
+        if !contact.fresh {
+            let k = state.contacts.binary_search_by_key(&key(&contact.history), key).unwrap_or_default();
+            let bond = state.bonds.get(k).copied().unwrap_or_default();
+            let mut history = state.contacts[k];
+            if history.normal_force != 0.0 && !self.is_as_before(contact) {
+                settle(contact, self.new, &mut history);
+            }
+            return Loaded { history, bond, shares: None };
+        }
+        let boundary = &self.new.boundary;
+        let joint = trace(boundary, contact);
+        let blocks = contact.blocks(boundary).map(|block| self.lineage.parents.blocks[block]);
+        if joint.is_some_and(|joint| joint.index() >= self.lineage.traces) {
+            return self.on_new_face(contact, blocks);
+        }
+        self.on_old_face(contact, (blocks, joint))
+    }
+
+    /// Whether a contact that goes on has the springs and the gap that it had.
+    fn is_as_before(&self, contact: &VertexEdge) -> bool {
+        let ContactHistory { node, side, .. } = contact.history;
+        let was = self.lineage.nodes[node].zip(self.lineage.sides[side]);
+        was.and_then(|was| self.before.springs.get(&was)) == Some(&(contact.gap, contact.stiffness))
+    }
+
+    /// A contact on a face that the cut has made bears the stress that the rock has there.
+    fn on_new_face(&self, contact: &VertexEdge, [block, _]: [BlockId; 2]) -> Loaded {
+        let [xx, yy, xy] = self.stress_about(contact, block);
+        let normal = contact.normal;
+        let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * contact.length;
+        let mut history = ContactHistory {
+            normal_force: -traction.dot(&normal),
+            shear_force: -traction.dot(&contact.tangent()),
+            filtered_normal: (-traction.dot(&normal)).max(0.0),
+            meeting: Meeting { age: f32::INFINITY, ..Meeting::default() },
+            state: ContactState::Lock,
+            intact: true,
+            ..contact.history
+        };
+        settle(contact, self.new, &mut history);
+        Loaded { history, bond: BondHistory::default(), shares: None }
+    }
+
+    /// Mean stress (Pa) of the rock before the cut on both sides of a node, along the face.
+    fn stress_about(&self, contact: &VertexEdge, block: BlockId) -> [f64; 3] {
+        let (boundary, covers) = (&self.new.boundary, &self.old.covers);
+        let edge = contact.history.edge;
+        let along = (boundary.reference[boundary.after(edge)] - boundary.reference[edge]).normalize();
+        let at = boundary.reference[contact.point];
+        let places = [-0.5, 0.5].map(|share| at + along * (share * contact.length));
+        let found = places.into_iter().chain([at]).filter_map(|p| covers.element_at(p));
+        let stresses: Vec<[f64; 3]> =
+            found.filter(|&e| covers.element_block[e] == block).map(|e| self.old.stress(self.was, e)).collect();
+        let count = stresses.len().max(1) as f64;
+        [0, 1, 2].map(|k| stresses.iter().map(|stress| stress[k]).sum::<f64>() / count)
+    }
+
+    /// A contact on a face that was there takes its part of what the contacts about it have borne.
+    fn on_old_face(&self, contact: &VertexEdge, face: Face) -> Loaded {
+        let at = self.new.boundary.reference[contact.point];
+        let is_of_face = |was: &&Bearing| was.contact.normal.dot(&contact.normal) > ONE_FACE;
+        let mut near: Vec<&Bearing> = self.before.faces.get(&face).into_iter().flatten().filter(is_of_face).collect();
+        near.sort_by(|a, b| (a.at - at).norm().total_cmp(&(b.at - at).norm()));
+        let Some(first) = near.first() else {
+            return Loaded { history: contact.history, bond: BondHistory::default(), shares: None };
+        };
+        let beyond = near.iter().find(|other| (other.at - at).dot(&(first.at - at)) < 0.0);
+        let share = beyond.map_or(0.0, |other| {
+            let [near, far] = [first.at, other.at].map(|place| (place - at).norm());
+            near / (near + far)
+        });
+        let traction = |of: fn(&ContactHistory) -> f64| {
+            let at = |was: &Bearing| of(&was.contact.history) / was.contact.length;
+            at(first) * (1.0 - share) + beyond.map_or(0.0, |other| at(other) * share)
+        };
+        let ContactHistory { node, side, edge, share: strength, .. } = contact.history;
+        let history = ContactHistory {
+            node,
+            side,
+            edge,
+            share: strength,
+            normal_force: traction(|history| history.normal_force) * contact.length,
+            shear_force: traction(|history| history.shear_force) * contact.length,
+            filtered_normal: traction(|history| history.filtered_normal) * contact.length,
+            trend: [0.0; 2],
+            ..first.contact.history
+        };
+        let lengths = [contact.length, contact.bonded];
+        let bond = self.bond_of(BondHistory { lengths, ..first.bond }, edge);
+        Loaded { history, bond, shares: Some(face) }
+    }
+
+    /// Spreads what contacts that take the place of others bear less than these over them by their lengths, so that
+    /// each face carries what it did.
+    fn keep_sums(&self, contacts: &[VertexEdge], loaded: &mut [Loaded]) {
+        let forces = |history: &ContactHistory| Vector::new(history.normal_force, history.shear_force);
+        let mut missing: BTreeMap<Face, (Vector, f64)> = BTreeMap::new();
+        for (contact, loaded) in contacts.iter().zip(&*loaded) {
+            if let Some(face) = loaded.shares {
+                missing.entry(face).or_default().1 += contact.length;
+            }
+        }
+        for (face, (sum, _)) in &mut missing {
+            *sum = self.before.faces[face].iter().map(|was| forces(&was.contact.history)).sum();
+        }
+        let boundary = &self.new.boundary;
+        for (contact, loaded) in contacts.iter().zip(&*loaded) {
+            let blocks = contact.blocks(boundary).map(|block| self.lineage.parents.blocks[block]);
+            if let Some((sum, _)) = missing.get_mut(&(blocks, trace(boundary, contact))) {
+                *sum -= forces(&loaded.history);
+            }
+        }
+        for (contact, loaded) in contacts.iter().zip(loaded) {
+            let Some((sum, length)) = loaded.shares.map(|face| missing[&face]) else { continue };
+            let own = sum * (contact.length / length);
+            loaded.history.normal_force += own.x;
+            loaded.history.shear_force += own.y;
+        }
+    }
+}
+
+/// Gives the springs of a contact the rest lengths at which they carry its forces where it is.
+fn settle(contact: &VertexEdge, model: &Model, history: &mut ContactHistory) {
+    let Unloaded { offset, rest } = contact.history.unloaded;
+    let closure = Closure { stiffness: contact.stiffness[0], most: model.laws[contact.law].closure_max };
+    let gap = contact.gap - offset + rest;
+    history.unloaded = Unloaded { offset: 0.0, rest: gap + closure.under(history.normal_force) };
+    history.sheared = history.shear_force / contact.stiffness[1];
+}
+
+/// For each of `count` parts before the part that it is now.
+fn inverse<I: Copy>(parents: &[Option<I>], count: usize, index: impl Fn(I) -> usize) -> Vec<Option<usize>> {
+    let mut own = vec![None; count];
+    for (k, parent) in parents.iter().enumerate() {
+        if let Some(parent) = parent {
+            own[index(*parent)] = Some(k);
+        }
+    }
+    own
+}

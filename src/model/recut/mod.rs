@@ -1,0 +1,64 @@
+//! Cuts of stages: the model is built again with them, and the state is carried over.
+//!
+//! A model is a pure function of the case and of the cuts so far, so that a run, a resumed run and a state that a host
+//! goes back to have the same one. All are built before the run begins.
+
+mod carry;
+mod contacts;
+mod lineage;
+mod places;
+
+use std::sync::Arc;
+
+use crate::model::assemble::{BuildStage, Built, Cut, Integrators, build};
+use crate::model::case::{Case, Invalid};
+use crate::state::State;
+
+pub use carry::carry;
+pub use lineage::Lineage;
+
+/// The model of a stage, and how it follows from that of the stage before; without a lineage it is the same.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    /// The model.
+    pub built: Arc<Built>,
+    /// Where its parts come from.
+    pub lineage: Option<Arc<Lineage>>,
+}
+
+/// The models of all stages, and the state at the start of the first.
+///
+/// # Errors
+/// The first key of the case that does not fit.
+pub fn grounds(
+    case: &Case,
+    integrators: &dyn Integrators,
+    tell: &mut dyn FnMut(BuildStage),
+) -> Result<(Vec<Ground>, State), Invalid> {
+    let (built, state) = build(case, &Cut::up_to(case, 0), integrators, tell)?;
+    let mut grounds = vec![Ground { built: Arc::new(built), lineage: None }];
+    for (k, stage) in case.stages.iter().enumerate().skip(1) {
+        let before = grounds[k - 1].built.clone();
+        grounds.push(if stage.cuts.is_empty() {
+            Ground { built: before, lineage: None }
+        } else {
+            let (mut built, _) = build(case, &Cut::up_to(case, k), integrators, tell)?;
+            let refused = |message| Invalid { key: format!("stage[{k}].cut"), message };
+            let lineage = Lineage::new(&before, &built).map_err(refused)?;
+            built.model.labels = lineage.labels(&before.model, &built.model);
+            Ground { built: Arc::new(built), lineage: Some(Arc::new(lineage)) }
+        });
+    }
+    Ok((grounds, state))
+}
+
+/// Changes the models of all stages alike.
+pub fn change(grounds: &mut [Ground], change: impl Fn(&mut Built)) {
+    for stage in 0..grounds.len() {
+        if stage > 0 && grounds[stage].lineage.is_none() {
+            grounds[stage].built = grounds[stage - 1].built.clone();
+        } else {
+            change(Arc::make_mut(&mut grounds[stage].built));
+        }
+    }
+}
