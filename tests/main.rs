@@ -70,6 +70,7 @@ mod runaway;
 mod sliding_converges;
 mod small_displacements;
 mod softening;
+mod stage_cuts;
 mod tuned_parameters;
 mod vertex_rule;
 mod water_in_joints;

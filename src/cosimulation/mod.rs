@@ -168,6 +168,7 @@ impl Cosimulation {
     /// The first value of the case that does not fit, with its key.
     pub fn new(case: Case) -> Result<Self, Invalid> {
         let hash = case.fingerprint()?;
+        case.refuse_cuts("a model that a host drives")?;
         let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
         let parameters = Parameters::of(simulation.case())?;

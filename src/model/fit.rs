@@ -9,7 +9,9 @@ use crate::contact::{
     Roughness, Unloaded,
 };
 use crate::geometry::Vector;
-use crate::state::{Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, MostRest, State};
+use crate::state::{
+    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
+};
 
 use super::Simulation;
 use super::case::StageKind;
@@ -157,37 +159,24 @@ impl Simulation {
             counters,
         } = state;
         self.check_clock(state)?;
-        self.check_motion(state)?;
-        self.check_contacts(contacts)?;
+        let model = &self.grounds[state.stage as usize].built.model;
+        self.check_motion(model, state)?;
+        check_contacts(model, contacts)?;
         let is_soft = laws.iter().any(|law| law.softening.is_some());
         length("bonds", bonds.len(), if is_soft { contacts.len() } else { 0 })?;
-        length("sections", sections.len(), self.model().sections.list.len())?;
+        length("sections", sections.len(), model.sections.list.len())?;
         check_bonds(bonds, laws.len(), sections)?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
         }
-        self.check_neighbours(neighbours)?;
-        self.check_found(found, contacts, neighbours)?;
-        self.check_stages(state)?;
-        self.check_drive(drive)?;
-        self.check_events(events)?;
+        check_neighbours(model, neighbours)?;
+        check_found(model, found, contacts, neighbours)?;
+        self.check_stages(model, state)?;
+        check_drive(model, drive)?;
+        check_events(model, events)?;
         check_ledger(ledger)?;
         check_counters(counters)
-    }
-
-    fn check_drive(&self, drive: &Drive) -> Fit {
-        let Drive { from, to, since, until, before: Course { end, rate }, moved } = drive;
-        self.check_inputs("drive.from", from)?;
-        self.check_inputs("drive.to", to)?;
-        number("drive.since", *since, TIME)?;
-        number("drive.until", *until, TIME)?;
-        number("drive.before.end", *end, TIME)?;
-        for (what, list) in [("drive.before.rate", rate), ("drive.moved", moved)] {
-            length(what, list.len(), self.model().ports.len())?;
-            vectors(what, list, RATE)?;
-        }
-        Ok(())
     }
 
     fn check_clock(&self, state: &State) -> Fit {
@@ -212,8 +201,8 @@ impl Simulation {
         between("static_stretch", state.static_stretch, 0.0, RATE)
     }
 
-    fn check_motion(&self, state: &State) -> Fit {
-        let (model, covers) = (self.model(), self.model().covers.cover_count());
+    fn check_motion(&self, model: &Model, state: &State) -> Fit {
+        let covers = model.covers.cover_count();
         let is_static = self.case().stages[state.stage as usize].kind == StageKind::Static;
         let of_static = if is_static { covers } else { 0 };
         let of_implicit = if state.acceleration.is_empty() { 0 } else { covers };
@@ -227,7 +216,8 @@ impl Simulation {
             length(what, list.len(), own)?;
             vectors(what, list, most)?;
         }
-        length("plastic", state.plastic.len(), self.state().plastic.len())?;
+        let of_yielding = if model.strengths.iter().any(Option::is_some) { model.covers.element_count() } else { 0 };
+        length("plastic", state.plastic.len(), of_yielding)?;
         numbers("plastic", state.plastic.as_flattened(), RATE)?;
         length("columns", state.columns.len(), model.columns.len())?;
         for (k, (column, own)) in state.columns.iter().zip(&model.columns).enumerate() {
@@ -240,94 +230,13 @@ impl Simulation {
         Ok(())
     }
 
-    fn check_contacts(&self, contacts: &[ContactHistory]) -> Fit {
-        let boundary = &self.model().boundary;
-        for (k, contact) in contacts.iter().enumerate() {
-            let &ContactHistory {
-                node,
-                side,
-                edge,
-                meeting: Meeting { age, kept_stiffness },
-                normal_force,
-                shear_force,
-                filtered_normal,
-                trend,
-                sheared,
-                unloaded: Unloaded { offset, rest },
-                slip,
-                way,
-                share,
-                state: _,
-                intact: _,
-            } = contact;
-            index(format_args!("contacts[{k}].node"), node.number(), boundary.node_count())?;
-            index(format_args!("contacts[{k}].side"), side.number(), boundary.sides.ends.len())?;
-            index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
-            between(format_args!("contacts[{k}].age"), age.into(), 0.0, f64::INFINITY)?;
-            between(format_args!("contacts[{k}].kept_stiffness"), kept_stiffness.into(), 0.0, FORCE)?;
-            for (field, value, most) in [
-                ("normal_force", normal_force, FORCE),
-                ("shear_force", shear_force, FORCE),
-                ("filtered_normal", filtered_normal, FORCE),
-                ("trend[0]", trend[0], FORCE),
-                ("trend[1]", trend[1], FORCE),
-                ("sheared", sheared, LENGTH),
-                ("offset", offset, LENGTH),
-                ("rest", rest, LENGTH),
-                ("slip", slip, LENGTH),
-                ("way", way, LENGTH),
-                ("share", share, RATE),
-            ] {
-                number(format_args!("contacts[{k}].{field}"), value, most)?;
-            }
-        }
-        in_order("contacts", "by node and side", contacts.is_sorted_by_key(|contact| (contact.node, contact.side)))
-    }
-
-    fn check_neighbours(&self, neighbours: &NeighbourList) -> Fit {
-        let boundary = &self.model().boundary;
-        for (k, pair) in neighbours.pairs.iter().enumerate() {
-            index(format_args!("neighbours.pairs[{k}].node"), pair.node.number(), boundary.node_count())?;
-            index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.sides.ends.len())?;
-            index(format_args!("neighbours.pairs[{k}].edge"), pair.edge.number(), boundary.len())?;
-        }
-        in_order("neighbours.pairs", "by node and side", neighbours.pairs.is_sorted())?;
-        let found_at = neighbours.found_at();
-        length("neighbours.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
-        vectors("neighbours.found_at", found_at, LENGTH)
-    }
-
-    /// Checks contacts as they were found, which are near sides of the last search.
-    fn check_found(&self, found: &FoundContacts, contacts: &[ContactHistory], neighbours: &NeighbourList) -> Fit {
-        let nodes = self.model().boundary.node_count();
-        if found.contacts.is_empty() {
-            return Ok(());
-        }
-        length("found.contacts", found.contacts.len(), contacts.len())?;
-        length("found.found_at", found.found_at().len(), nodes)?;
-        vectors("found.found_at", found.found_at(), LENGTH)?;
-        let near_sides = neighbours.pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side));
-        let near_sides: Vec<_> = near_sides.map(|pairs| (pairs[0].node, pairs[0].side)).collect();
-        for (k, (found, contact)) in found.contacts.iter().zip(contacts).enumerate() {
-            let &FoundContact { near_side, length, bonded, penalty, share, keeps: _ } = found;
-            if near_sides.get(near_side as usize) != Some(&(contact.node, contact.side)) {
-                unfit(format_args!("found.contacts[{k}].near_side"), near_side, "that of the contact".to_owned())?;
-            }
-            for (field, value) in [("length", length), ("bonded", bonded), ("penalty", penalty), ("share", share)] {
-                between(format_args!("found.contacts[{k}].{field}"), value, 0.0, LENGTH)?;
-            }
-        }
-        Ok(())
-    }
-
     /// Checks what stages change: supports, fixities, blocks that are gone, laws and bolts.
-    fn check_stages(&self, state: &State) -> Fit {
-        let own = self.state();
-        length("support_force", state.support_force.len(), own.support_force.len())?;
-        length("support_rest", state.support_rest.len(), own.support_rest.len())?;
-        length("fix_active", state.fix_active.len(), own.fix_active.len())?;
-        length("removed", state.removed.len(), own.removed.len())?;
-        length("bolts", state.bolts.len(), own.bolts.len())?;
+    fn check_stages(&self, model: &Model, state: &State) -> Fit {
+        length("support_force", state.support_force.len(), model.supports.len())?;
+        length("support_rest", state.support_rest.len(), model.supports.len())?;
+        length("fix_active", state.fix_active.len(), model.fixities.len())?;
+        length("removed", state.removed.len(), model.covers.block_count())?;
+        length("bolts", state.bolts.len(), model.bolts.len())?;
         numbers("support_force", &state.support_force, FORCE)?;
         numbers("support_rest", &state.support_rest, LENGTH)?;
         let (laws, switch) = self.laws_in(state.stage);
@@ -345,70 +254,162 @@ impl Simulation {
         }
         Ok(())
     }
+}
 
-    fn check_inputs(&self, of: &str, inputs: &Inputs) -> Fit {
-        let (blocks, ports) = (self.state().removed.len(), self.model().ports.len());
-        let Inputs {
-            gravity,
-            base_acceleration,
-            water_level,
-            strength_factor,
-            block_force,
-            block_moment,
-            port_traction,
-            port_pressure,
-            port_velocity,
-        } = inputs;
-        length(format_args!("{of}.port_velocity"), port_velocity.len(), ports)?;
-        vectors(&format!("{of}.port_velocity"), port_velocity, RATE)?;
-        vector(format_args!("{of}.gravity"), *gravity, RATE)?;
-        vector(format_args!("{of}.base_acceleration"), *base_acceleration, RATE)?;
-        number(format_args!("{of}.water_level"), *water_level, LENGTH)?;
-        between(format_args!("{of}.strength_factor"), *strength_factor, 0.0, FACTOR_MAX)?;
-        for (field, list, own) in [("block_force", block_force, blocks), ("port_traction", port_traction, ports)] {
-            length(format_args!("{of}.{field}"), list.len(), own)?;
-            vectors(&format!("{of}.{field}"), list, FORCE)?;
-        }
-        for (field, list, own) in [("block_moment", block_moment, blocks), ("port_pressure", port_pressure, ports)] {
-            length(format_args!("{of}.{field}"), list.len(), own)?;
-            numbers(&format!("{of}.{field}"), list, FORCE)?;
-        }
-        Ok(())
+fn check_drive(model: &Model, drive: &Drive) -> Fit {
+    let Drive { from, to, since, until, before: Course { end, rate }, moved } = drive;
+    check_inputs(model, "drive.from", from)?;
+    check_inputs(model, "drive.to", to)?;
+    number("drive.since", *since, TIME)?;
+    number("drive.until", *until, TIME)?;
+    number("drive.before.end", *end, TIME)?;
+    for (what, list) in [("drive.before.rate", rate), ("drive.moved", moved)] {
+        length(what, list.len(), model.ports.len())?;
+        vectors(what, list, RATE)?;
     }
+    Ok(())
+}
 
-    fn check_events(&self, events: &Events) -> Fit {
-        let (blocks, traces) = (self.state().removed.len(), self.model().trace_law.len());
-        let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max, port_slip } = events;
-        length("events.touching", touching.len(), blocks)?;
-        length("events.detached", detached.len(), blocks)?;
-        length("events.slipped", slipped.len(), traces + 1)?;
-        length("events.failed", failed.len(), blocks)?;
-        length("events.bonded", bonded.len(), if bonded.is_empty() { 0 } else { traces })?;
-        between("events.overlap_max", *overlap_max, 0.0, LENGTH)?;
-        length("events.port_slip", port_slip.len(), self.model().ports.len())?;
-        port_slip.iter().try_for_each(|slip| between("events.port_slip", *slip, 0.0, LENGTH))?;
-        for (k, pair) in overlapped.iter().enumerate() {
-            pair.iter().try_for_each(|b| index(format_args!("events.overlapped[{k}]"), b.number(), blocks))?;
+fn check_contacts(model: &Model, contacts: &[ContactHistory]) -> Fit {
+    let boundary = &model.boundary;
+    for (k, contact) in contacts.iter().enumerate() {
+        let &ContactHistory {
+            node,
+            side,
+            edge,
+            meeting: Meeting { age, kept_stiffness },
+            normal_force,
+            shear_force,
+            filtered_normal,
+            trend,
+            sheared,
+            unloaded: Unloaded { offset, rest },
+            slip,
+            way,
+            share,
+            state: _,
+            intact: _,
+        } = contact;
+        index(format_args!("contacts[{k}].node"), node.number(), boundary.node_count())?;
+        index(format_args!("contacts[{k}].side"), side.number(), boundary.sides.ends.len())?;
+        index(format_args!("contacts[{k}].edge"), edge.number(), boundary.len())?;
+        between(format_args!("contacts[{k}].age"), age.into(), 0.0, f64::INFINITY)?;
+        between(format_args!("contacts[{k}].kept_stiffness"), kept_stiffness.into(), 0.0, FORCE)?;
+        for (field, value, most) in [
+            ("normal_force", normal_force, FORCE),
+            ("shear_force", shear_force, FORCE),
+            ("filtered_normal", filtered_normal, FORCE),
+            ("trend[0]", trend[0], FORCE),
+            ("trend[1]", trend[1], FORCE),
+            ("sheared", sheared, LENGTH),
+            ("offset", offset, LENGTH),
+            ("rest", rest, LENGTH),
+            ("slip", slip, LENGTH),
+            ("way", way, LENGTH),
+            ("share", share, RATE),
+        ] {
+            number(format_args!("contacts[{k}].{field}"), value, most)?;
         }
-        in_order("events.overlapped", "by block", overlapped.is_sorted_by(|a, b| a < b))?;
-        for (k, Event { kind, subject, time, other, depth }) in list.iter().enumerate() {
-            number(format_args!("events.list[{k}].time"), *time, TIME)?;
-            between(format_args!("events.list[{k}].depth"), *depth, 0.0, LENGTH)?;
-            if *kind == EventKind::Overlapped {
-                index(format_args!("events.list[{k}].other"), *other, blocks)?;
+    }
+    in_order("contacts", "by node and side", contacts.is_sorted_by_key(|contact| (contact.node, contact.side)))
+}
+
+fn check_neighbours(model: &Model, neighbours: &NeighbourList) -> Fit {
+    let boundary = &model.boundary;
+    for (k, pair) in neighbours.pairs.iter().enumerate() {
+        index(format_args!("neighbours.pairs[{k}].node"), pair.node.number(), boundary.node_count())?;
+        index(format_args!("neighbours.pairs[{k}].side"), pair.side.number(), boundary.sides.ends.len())?;
+        index(format_args!("neighbours.pairs[{k}].edge"), pair.edge.number(), boundary.len())?;
+    }
+    in_order("neighbours.pairs", "by node and side", neighbours.pairs.is_sorted())?;
+    let found_at = neighbours.found_at();
+    length("neighbours.found_at", found_at.len(), if found_at.is_empty() { 0 } else { boundary.node_count() })?;
+    vectors("neighbours.found_at", found_at, LENGTH)
+}
+
+/// Checks contacts as they were found, which are near sides of the last search.
+fn check_found(model: &Model, found: &FoundContacts, contacts: &[ContactHistory], neighbours: &NeighbourList) -> Fit {
+    let nodes = model.boundary.node_count();
+    if found.contacts.is_empty() {
+        return Ok(());
+    }
+    length("found.contacts", found.contacts.len(), contacts.len())?;
+    length("found.found_at", found.found_at().len(), nodes)?;
+    vectors("found.found_at", found.found_at(), LENGTH)?;
+    let near_sides = neighbours.pairs.chunk_by(|a, b| (a.node, a.side) == (b.node, b.side));
+    let near_sides: Vec<_> = near_sides.map(|pairs| (pairs[0].node, pairs[0].side)).collect();
+    for (k, (found, contact)) in found.contacts.iter().zip(contacts).enumerate() {
+        let &FoundContact { near_side, length, bonded, penalty, share, keeps: _ } = found;
+        if near_sides.get(near_side as usize) != Some(&(contact.node, contact.side)) {
+            unfit(format_args!("found.contacts[{k}].near_side"), near_side, "that of the contact".to_owned())?;
+        }
+        for (field, value) in [("length", length), ("bonded", bonded), ("penalty", penalty), ("share", share)] {
+            between(format_args!("found.contacts[{k}].{field}"), value, 0.0, LENGTH)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_inputs(model: &Model, of: &str, inputs: &Inputs) -> Fit {
+    let (blocks, ports) = (model.covers.block_count(), model.ports.len());
+    let Inputs {
+        gravity,
+        base_acceleration,
+        water_level,
+        strength_factor,
+        block_force,
+        block_moment,
+        port_traction,
+        port_pressure,
+        port_velocity,
+    } = inputs;
+    length(format_args!("{of}.port_velocity"), port_velocity.len(), ports)?;
+    vectors(&format!("{of}.port_velocity"), port_velocity, RATE)?;
+    vector(format_args!("{of}.gravity"), *gravity, RATE)?;
+    vector(format_args!("{of}.base_acceleration"), *base_acceleration, RATE)?;
+    number(format_args!("{of}.water_level"), *water_level, LENGTH)?;
+    between(format_args!("{of}.strength_factor"), *strength_factor, 0.0, FACTOR_MAX)?;
+    for (field, list, own) in [("block_force", block_force, blocks), ("port_traction", port_traction, ports)] {
+        length(format_args!("{of}.{field}"), list.len(), own)?;
+        vectors(&format!("{of}.{field}"), list, FORCE)?;
+    }
+    for (field, list, own) in [("block_moment", block_moment, blocks), ("port_pressure", port_pressure, ports)] {
+        length(format_args!("{of}.{field}"), list.len(), own)?;
+        numbers(&format!("{of}.{field}"), list, FORCE)?;
+    }
+    Ok(())
+}
+
+fn check_events(model: &Model, events: &Events) -> Fit {
+    let (blocks, traces) = (model.covers.block_count(), model.trace_law.len());
+    let Events { list, touching, detached, slipped, failed, bonded, overlapped, overlap_max, port_slip } = events;
+    length("events.touching", touching.len(), blocks)?;
+    length("events.detached", detached.len(), blocks)?;
+    length("events.slipped", slipped.len(), traces + 1)?;
+    length("events.failed", failed.len(), blocks)?;
+    length("events.bonded", bonded.len(), if bonded.is_empty() { 0 } else { traces })?;
+    between("events.overlap_max", *overlap_max, 0.0, LENGTH)?;
+    length("events.port_slip", port_slip.len(), model.ports.len())?;
+    port_slip.iter().try_for_each(|slip| between("events.port_slip", *slip, 0.0, LENGTH))?;
+    for (k, pair) in overlapped.iter().enumerate() {
+        pair.iter().try_for_each(|b| index(format_args!("events.overlapped[{k}]"), b.number(), blocks))?;
+    }
+    in_order("events.overlapped", "by block", overlapped.is_sorted_by(|a, b| a < b))?;
+    for (k, Event { kind, subject, time, other, depth }) in list.iter().enumerate() {
+        number(format_args!("events.list[{k}].time"), *time, TIME)?;
+        between(format_args!("events.list[{k}].depth"), *depth, 0.0, LENGTH)?;
+        if *kind == EventKind::Overlapped {
+            index(format_args!("events.list[{k}].other"), *other, blocks)?;
+        }
+        match kind {
+            EventKind::Slipped if *subject == u32::MAX => Ok(()),
+            EventKind::Slipped | EventKind::Broken => index(format_args!("events.list[{k}].subject"), *subject, traces),
+            EventKind::Detached | EventKind::Failed | EventKind::Overlapped => {
+                index(format_args!("events.list[{k}].subject"), *subject, blocks)
             }
-            match kind {
-                EventKind::Slipped if *subject == u32::MAX => Ok(()),
-                EventKind::Slipped | EventKind::Broken => {
-                    index(format_args!("events.list[{k}].subject"), *subject, traces)
-                }
-                EventKind::Detached | EventKind::Failed | EventKind::Overlapped => {
-                    index(format_args!("events.list[{k}].subject"), *subject, blocks)
-                }
-            }?;
-        }
-        Ok(())
+        }?;
     }
+    Ok(())
 }
 
 /// Checks joint laws, which are those of the stage but for what a host may change.

@@ -14,7 +14,7 @@ use super::Simulation;
 /// A block as hosts see it; velocities are those of half a step ago.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BlockState {
-    /// Block id.
+    /// Number of the block ([`Model::labels`](crate::state::Model::labels)).
     pub id: u32,
     /// Whether no cover of the block can move.
     pub fixed: bool,
@@ -288,7 +288,7 @@ impl Simulation {
         let area = covers.block_area(block);
         let removed = state.removed[block];
         BlockState {
-            id: block.number(),
+            id: model.labels[block],
             fixed: mass_matrix.fixed[block],
             removed,
             centroid: start + displacement,

@@ -1,5 +1,6 @@
 //! The façade that callers hold: a built model that advances stage by stage.
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use crate::contact::{DetectionRule, SideId, VertexEdge};
@@ -210,6 +211,22 @@ impl Simulation {
         }
     }
 
+    /// The same with the cuts of all later stages, which part blocks and change nothing else, to be looked at: so that
+    /// pictures of all stages have the same blocks.
+    pub fn cut_ahead(&self) -> Cow<'_, Self> {
+        let later = self.state.stage as usize + 1..self.grounds.len();
+        if self.grounds[later.clone()].iter().all(|ground| ground.lineage.is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let mut ahead = self.clone();
+        ahead.looks.forget();
+        for stage in later {
+            ahead.cut(stage);
+            step::prepare(&ahead.built.model, &ahead.state, &mut ahead.workspace);
+        }
+        Cow::Owned(ahead)
+    }
+
     /// Advances one internal step; `report` requests energies and the unbalanced ratio at its start. Every
     /// [`overlap::EVERY`] steps it looks for blocks that overlap.
     ///
@@ -250,7 +267,7 @@ impl Simulation {
             events.overlap_max = events.overlap_max.max(depth);
             if let Err(place) = events.overlapped.binary_search(&blocks) {
                 events.overlapped.insert(place, blocks);
-                let [subject, other] = blocks.map(BlockId::number);
+                let [subject, other] = blocks.map(|block| self.built.model.labels[block]);
                 events.list.push(Event { kind: EventKind::Overlapped, subject, time, other, depth });
             }
         }

@@ -24,12 +24,12 @@ pub enum EventKind {
 pub struct Event {
     /// What.
     pub kind: EventKind,
-    /// Block id, or index of the joint trace; `u32::MAX` for contacts away from joints. Of two blocks that overlap the
-    /// one with the lower id.
+    /// Number of the block ([`Model::labels`](super::Model::labels)), or index of the joint trace; `u32::MAX` for
+    /// contacts away from joints. Of two blocks that overlap the one with the lower id.
     pub subject: u32,
     /// End of the internal step in which it happened (s).
     pub time: f64,
-    /// Id of the other block of an overlap; `u32::MAX` for events of other kinds.
+    /// Number of the other block of an overlap; `u32::MAX` for events of other kinds.
     pub other: u32,
     /// Depth of an overlap when it was found (m); 0 for events of other kinds.
     pub depth: f64,

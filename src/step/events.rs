@@ -26,21 +26,21 @@ pub fn note(model: &Model, regime: Regime, state: &mut State, workspace: &mut Wo
         note_broken(model, state, time);
     }
     if let Regime::Dynamic { .. } = regime {
-        note_detached(state, workspace, time);
+        note_detached(model, state, workspace, time);
         note_slipped(model, state, time);
         note_failed(model, state, workspace, time);
     }
     state.events.touching.copy_from_slice(&workspace.motion.touching);
 }
 
-fn note_detached(state: &mut State, workspace: &Workspace, time: f64) {
+fn note_detached(model: &Model, state: &mut State, workspace: &Workspace, time: f64) {
     let events = &mut state.events;
     for block in BlockId::all(workspace.motion.touching.len()) {
         let free = !workspace.mass_matrix.fixed[block] && !state.removed[block];
         let left = events.touching[block] && !workspace.motion.touching[block];
         if left && free && !events.detached[block] {
             events.detached[block] = true;
-            events.list.push(Event::of(EventKind::Detached, block.number(), time));
+            events.list.push(Event::of(EventKind::Detached, model.labels[block], time));
         }
     }
 }
@@ -110,7 +110,7 @@ fn note_failed(model: &Model, state: &mut State, workspace: &mut Workspace, time
             let sum: Vector = covers.map(|i| state.displacement[i] * model.mass_matrix.row_sum[i]).sum();
             if sum.norm() > limit * model.mass_matrix.total[block] {
                 state.events.failed[block] = true;
-                state.events.list.push(Event::of(EventKind::Failed, block.number(), time));
+                state.events.list.push(Event::of(EventKind::Failed, model.labels[block], time));
             }
         }
     }

@@ -210,6 +210,21 @@ impl Case {
         [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
     }
 
+    /// Refuses stages that cut the rock, on behalf of one that cannot follow a model whose blocks change.
+    ///
+    /// # Errors
+    /// The first cut of a stage.
+    pub fn refuse_cuts(&self, who: &str) -> Result<(), Invalid> {
+        let cut = self.stages.iter().position(|stage| !stage.cuts.is_empty());
+        cut.map_or(Ok(()), |k| {
+            let message = format!(
+                "is for `enmm run`, and {who} cannot follow blocks that a stage parts; draw the line as a joint from \
+                 the start, with a law that holds until a stage switches it, or remove it"
+            );
+            Err(Invalid { key: format!("stage[{k}].cut[0]"), message })
+        })
+    }
+
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
     pub fn is_whole(&self) -> bool {
         self.joints.is_empty() && self.joint_sets.is_empty() && self.bridges.is_empty() && self.bolts.is_empty()

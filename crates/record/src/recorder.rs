@@ -151,6 +151,9 @@ impl Recorder {
     pub fn begin_stage(&mut self, simulation: &Simulation) -> io::Result<()> {
         self.stage_clock = Instant::now();
         self.plan = Plan::of(simulation);
+        if !simulation.stage().cuts.is_empty() {
+            self.joints = Joints::of(simulation);
+        }
         self.begin_row(simulation);
         let (state, progress) = (simulation.state(), &mut self.progress);
         progress.reports.unsettled_before = state.counters.unsettled;

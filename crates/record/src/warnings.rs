@@ -126,7 +126,8 @@ impl Recorder {
 }
 
 fn overlap_text(simulation: &Simulation, event: &Event) -> String {
-    let place = simulation.motion_of(BlockId::new(event.subject as usize)).centroid;
+    let block = simulation.model().labelled(event.subject).unwrap_or_default();
+    let place = simulation.motion_of(block).centroid;
     format!(
         "{} near ({:.3}, {:.3}) m at t = {} s: results about them are wrong from here on; where their joint is \
          soft, raise its normal_stiffness",

@@ -127,16 +127,13 @@ impl Carry<'_> {
         let middle = (old.reference[edge] + old.reference[old.after(edge)]) * 0.5;
         let [first, last] = new.sides.ends[side].map(|end| end.edge);
         let all = std::iter::successors(Some(first), |&edge| (edge != last).then(|| new.after(edge)));
-        let distance =
-            |edge: &EdgeId| segment::distance(middle, new.reference[*edge], new.reference[new.after(*edge)]);
+        let distance = |edge: &EdgeId| segment::distance(middle, new.reference[*edge], new.reference[new.after(*edge)]);
         all.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(first)
     }
 
     /// A bond on an edge after the cut: it breaks with the part of its section that has the edge.
     fn bond_of(&self, bond: BondHistory, edge: EdgeId) -> BondHistory {
-        let is_part = |id: &SectionId| {
-            self.lineage.sections[id.index()] == bond.section.map(|section| section.index())
-        };
+        let is_part = |id: &SectionId| self.lineage.sections[id.index()] == bond.section.map(|section| section.index());
         let section = bond.section.and_then(|_| self.new.sections.of(edge)).filter(is_part);
         BondHistory { section, ..bond }
     }

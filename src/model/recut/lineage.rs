@@ -55,7 +55,11 @@ impl Lineage {
         Ok(Self {
             heirs: parents.heirs(&old.covers, &new.covers),
             supports: supports(old, new, &parents, tolerance)?,
-            bolts: new.bolts.iter().map(|bolt| old.bolts.iter().position(|was| is_same(was, bolt, tolerance))).collect(),
+            bolts: new
+                .bolts
+                .iter()
+                .map(|bolt| old.bolts.iter().position(|was| is_same(was, bolt, tolerance)))
+                .collect(),
             sections: sections(old, new, tolerance),
             nodes: nodes(&old.boundary, &new.boundary, &parents.blocks, tolerance),
             sides: sides(&old.boundary, &new.boundary, &parents.blocks, tolerance),

@@ -66,6 +66,7 @@ impl Film {
         opening: Opening,
         until: Option<f64>,
     ) -> io::Result<Self> {
+        let simulation = &*simulation.cut_ahead();
         let (outlines, corners) = outlines(simulation);
         let path = opening.film.clone();
         let shown: Vec<&Quantity<BlockState>> = opening.numbers.iter().filter_map(|name| number(name)).collect();
@@ -91,6 +92,7 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
+        let simulation = &*simulation.cut_ahead();
         let displacement = |&point: &EdgeId| {
             let sample = simulation.model().boundary.sample(point, &simulation.state().displacement);
             [sample.x, sample.y]
@@ -292,11 +294,10 @@ fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<EdgeId>) {
     let place = |&point: &EdgeId| boundary.reference[point];
     let area = |points: &Vec<EdgeId>| polygon::area(&points.iter().map(place).collect::<Vec<Point>>());
     let states = simulation.block_states();
-    let outline = |(loops, state): (&mut Vec<Vec<EdgeId>>, &BlockState)| {
+    let outline = |(block, (loops, state)): (BlockId, (&mut Vec<Vec<EdgeId>>, &BlockState))| {
         loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
         let centroid = state.centroid - state.displacement;
-        let rock =
-            model.covers.elements_of(BlockId::new(state.id as usize)).next().map_or(0, |e| model.element_rock[e]);
+        let rock = model.covers.elements_of(block).next().map_or(0, |e| model.element_rock[e]);
         let corners = |points: &Vec<EdgeId>| points.iter().map(|p| [place(p).x, place(p).y]).collect();
         Outline {
             id: state.id,
@@ -308,7 +309,7 @@ fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<EdgeId>) {
             loops: loops.iter().map(corners).collect(),
         }
     };
-    let outlines = loops.iter_mut().zip(&states).map(outline).collect();
+    let outlines = model.covers.blocks().zip(loops.iter_mut().zip(&states)).map(outline).collect();
     (outlines, loops.into_iter().flatten().flatten().collect())
 }
 

@@ -35,6 +35,7 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     }
     let mut warnings = Vec::from_iter(left_out_stages(&case));
     case.stages.truncate(count);
+    case.refuse_cuts("limit analysis")?;
     if !case.base_motions.is_empty() {
         warnings.push("base motion is left out: give a seismic coefficient as a load of kind body".into());
         case.base_motions.clear();

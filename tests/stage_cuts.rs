@@ -1,0 +1,186 @@
+//! Claim: a stage cuts the rock along a line that was not drawn before, and the model goes on as if nothing else had
+//! happened.
+
+use enmm::model::bytes::{Keeper, decode, encode};
+use enmm::model::{Simulation, State};
+
+use crate::common::random::Random;
+use crate::common::{run_all, run_stage, simulation, step};
+
+const ROCK: &str = "[rock.rock]\ndensity = 2600\nyoung = 30e6\npoisson = 0.25\n";
+
+/// A plate of 4 m by 2 m that flies and spins free, and is cut along a line while it does.
+fn plate(size: f64, angle: f64, [a, b]: [[f64; 2]; 2]) -> Simulation {
+    simulation(&format!(
+        "title = \"plate\"\n[domain]\noutline = [[0, 0], [4, 0], [4, 2], [0, 2]]\n[gravity]\ny = 0\n[mesh]\n\
+         size = {size}\nangle_deg = {angle}\norigin = [0.0137, 0.0071]\nleast_block = 0\n{ROCK}\
+         [joint_law.joint]\nfriction_deg = 30\n[[initial_velocity]]\nvelocity = [3, -2]\nangular_velocity = 5\n\
+         [[stage]]\nname = \"flight\"\nkind = \"dynamic\"\nduration = 0.1\ndamping = 0\n[[stage]]\nname = \"cut\"\n\
+         kind = \"dynamic\"\nduration = 0.1\ndamping = 0\ncut = [{{ points = [{a:?}, {b:?}], law = \"joint\" }}]\n"
+    ))
+}
+
+/// Mass, momentum, angular momentum and kinetic energy.
+fn sums(simulation: &Simulation) -> [f64; 5] {
+    let (momentum, angular) = simulation.momentum();
+    let mass = simulation.workspace().mass_matrix.total.iter().sum();
+    [mass, momentum.x, momentum.y, angular, simulation.energies().kinetic]
+}
+
+/// What a random cut of the plate changes of its sums, relative to them, and the number of its parts.
+fn changes(random: &mut Random, size: f64) -> ([f64; 5], usize) {
+    let mut point = || [-0.2 + 4.4 * random.unit(), -0.2 + 2.4 * random.unit()];
+    let mut flying = loop {
+        let ends = [point(), point()];
+        let angle = 60.0 * ends[0][0];
+        let length = (ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]);
+        if length > 1.5 {
+            break plate(size, angle, ends);
+        }
+    };
+    step(&mut flying, 7);
+    let before = sums(&flying);
+    assert!(flying.next_stage().unwrap_or_else(|e| panic!("{e}")));
+    let after = sums(&flying);
+    let parts = flying.model().covers.block_count();
+    step(&mut flying, 1);
+    ([0, 1, 2, 3, 4].map(|k| after[k] / before[k] - 1.0), parts)
+}
+
+/// Sums of partial cuts stay to round-off. A plate that falls in two keeps its momentum, and its angular momentum by a
+/// spin of both parts, which takes kinetic energy.
+#[test]
+fn random_cuts_keep_mass_and_momentum_and_never_add_energy() {
+    let count = if std::env::var("ENMM_FULL").is_ok() { 1000 } else { 40 };
+    let mut random = Random::new(17);
+    let (mut split, mut worst, mut loss) = (0, [0.0_f64; 5], 0.0_f64);
+    for k in 0..count {
+        let (changes, parts) = changes(&mut random, 0.5);
+        println!("{k}: {parts} parts, {changes:?}");
+        let limits = if parts == 1 { [1e-13; 5] } else { [1e-12, 1e-12, 1e-12, 1e-12, 1e-13] };
+        for j in 0..5 {
+            let change = if j == 4 && parts > 1 { changes[j].max(0.0) } else { changes[j].abs() };
+            assert!(change <= limits[j], "cut {k} into {parts}: sum {j} by {change:e}");
+            worst[j] = worst[j].max(change);
+        }
+        if parts > 1 {
+            (split, loss) = (split + 1, loss.max(-changes[4]));
+        }
+    }
+    println!("{split} of {count} fall in two; worst {worst:?}; loss {loss:e}");
+    assert!(split > count / 10 && split < count);
+}
+
+/// A stack of columns 6 m high on a base; a stage may cut and dig.
+fn columns(joints: &str, stage: &str) -> Simulation {
+    simulation(&format!(
+        "title = \"columns\"\n[domain]\noutline = [[0, 0], [10, 0], [10, 8], [0, 8]]\n[mesh]\nsize = 0.8\n\
+         origin = [0.0137, 0.0071]\n{ROCK}[joint_law.joint]\nfriction_deg = 35\nnormal_stiffness = 1e9\n\
+         shear_stiffness = 1e9\n[joint_law.bond]\nfriction_deg = 45\ncohesion = 1e9\ntension = 1e9\n\
+         normal_stiffness = 1e11\nshear_stiffness = 1e11\n[[fix]]\nedge = [[0, 0], [10, 0]]\n[[joint]]\n\
+         points = [[3.3, 0.5], [3.3, 9]]\nlaw = \"joint\"\n[[joint]]\npoints = [[-1, 0.5], [11, 0.5]]\n\
+         law = \"joint\"\n{joints}[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 20\n\
+         convergence = 1e-6\n{stage}"
+    ))
+}
+
+fn stage(name: &str, more: &str) -> String {
+    format!("[[stage]]\nname = \"{name}\"\nkind = \"static\"\nduration = 20\nconvergence = 1e-6\n{more}\n")
+}
+
+/// Greatest displacement, and greatest difference of those of two states of the same covers.
+fn difference(a: &State, b: &State) -> [f64; 2] {
+    assert_eq!(a.displacement.len(), b.displacement.len());
+    let most = a.displacement.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    let pairs = a.displacement.iter().zip(&b.displacement);
+    [most, pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)]
+}
+
+/// Rock of which a stage digs away a part along a line that it cuts itself comes to rest where the same rock does with
+/// that line drawn from the start.
+#[test]
+fn a_cut_and_an_excavation_end_where_the_drawn_joint_does() {
+    let line = "points = [[5.1, 9], [5.1, 4.1], [11, 4.1]]";
+    let digs = "excavate = [[8, 6]]";
+    let mut cut = columns("", &stage("dig", &format!("{digs}\ncut = [{{ {line}, law = \"joint\" }}]")));
+    let mut drawn = columns(&format!("[[joint]]\n{line}\nlaw = \"joint\"\n"), &stage("dig", digs));
+    run_all(&mut cut);
+    run_all(&mut drawn);
+    assert_eq!(cut.model().labels.len(), 4);
+    let kept = |simulation: &Simulation| {
+        let mut state = simulation.state().clone();
+        let covers = &simulation.model().covers;
+        let gone = state.displacement.iter_mut().zip(&covers.cover_block);
+        gone.filter(|(_, block)| state.removed[block.index()]).for_each(|(u, _)| u.fill(0.0));
+        state
+    };
+    let [most, apart] = difference(&kept(&cut), &kept(&drawn));
+    println!("moved {most:e} m, apart {apart:e} m");
+    assert!(apart < 1e-6 * 10.0 && apart < 1e-3 * most, "{apart} of {most}");
+}
+
+/// A cut whose bond holds changes next to nothing, and the rock rests as with the line drawn from the start.
+#[test]
+fn a_cut_whose_bond_holds_leaves_the_rock_at_rest() {
+    let line = "points = [[2, 9], [9, 2.5]]";
+    let dynamic = format!(
+        "[[stage]]\nname = \"cut\"\nkind = \"dynamic\"\nduration = 0.05\ncut = [{{ {line}, law = \"bond\" }}]\n"
+    );
+    let mut cut = columns("", &(dynamic + &stage("rest again", "")));
+    let mut drawn = columns(&format!("[[joint]]\n{line}\nlaw = \"bond\"\n"), "");
+    run_stage(&mut drawn);
+    run_stage(&mut cut);
+    cut.next_stage().unwrap_or_else(|e| panic!("{e}"));
+    let mut most = 0.0_f64;
+    while cut.state().stage_step < 200 {
+        let ledger = cut.advance(true).unwrap_or_else(|e| panic!("{e}")).ledger;
+        most = most.max(ledger.kinetic / ledger.strain);
+    }
+    run_all(&mut cut);
+    let [moved, apart] = difference(cut.state(), drawn.state());
+    println!("kinetic {most:e} of strain; apart {apart:e} of {moved:e} m");
+    assert!(most < 2e-2, "{most}");
+    assert!(apart < 1e-3 * moved, "{apart} of {moved}");
+}
+
+/// A run with a cut has the same bits on other threads, when it goes back to a state before the cut, and when it takes
+/// up a state after the cut in another process.
+#[test]
+fn a_cut_has_the_same_bits_by_threads_rollback_and_bytes() {
+    let build = || {
+        let cut = "cut = [{ points = [[2, 9], [9, 2.5]], law = \"joint\" }]";
+        columns("", &stage("cut", cut).replace("static", "dynamic").replace("convergence = 1e-6\n", ""))
+    };
+    let bytes = |simulation: &Simulation| {
+        let mut state = simulation.state().clone();
+        state.counters.searches = 0;
+        encode(Keeper::Model, &state, "").expect("bytes")
+    };
+    let on = |mut simulation: Simulation| {
+        if simulation.state().stage == 0 {
+            assert!(simulation.next_stage().unwrap_or_else(|e| panic!("{e}")));
+        }
+        let after = simulation.state().clone();
+        step(&mut simulation, 60);
+        (after, simulation)
+    };
+    let mut one = build();
+    step(&mut one, 300);
+    let before = one.state().clone();
+    let (after, mut one) = on(one);
+    let end = bytes(&one);
+    one.return_to(&before);
+    assert_eq!(one.model().covers.block_count(), 3);
+    let (_, one) = on(one);
+    assert!(bytes(&one) == end, "back to before the cut");
+    let saved = encode(Keeper::Model, &after, "hash").expect("bytes");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a pool");
+    let other = pool.install(|| {
+        let mut other = build();
+        let state = decode(Keeper::Model, &saved, "hash").expect("a state");
+        other.check(&state).unwrap_or_else(|e| panic!("{e}"));
+        other.restore(state);
+        bytes(&on(other).1)
+    });
+    assert!(other == end, "from bytes, on other threads");
+}
