@@ -71,6 +71,8 @@ struct Before {
 impl Before {
     fn new(old: &Model, was: &State) -> Self {
         let mut state = was.clone();
+        state.neighbours.forget();
+        state.found.forget();
         // Forces that damp a stage find no contacts.
         state.stage_displacement.clear();
         state.stage_force.clear();
