@@ -188,17 +188,48 @@ fn a_cut_has_the_same_bits_by_threads_rollback_and_bytes() {
 
 #[test]
 fn scratch() {
-    for line in ["points = [[2, 9], [9, 2.5]]", "points = [[4, 9], [11, 3]]", "points = [[4, 9], [7, 3]]"] {
-        let cut_stage = format!("cut = [{{ {line}, law = \"bond\" }}]\n");
-        let mut cut = blocks("", &stage("cut", &cut_stage));
-        let mut drawn = blocks(&format!("[[joint]]\n{line}\nlaw = \"bond\"\n"), "");
-        run_stage(&mut drawn);
-        run_stage(&mut cut);
-        cut.next_stage().unwrap();
-        let [moved, apart] = difference(&cut, &drawn);
-        println!("{line} before: apart {apart:e} of {moved:e} m");
-        run_all(&mut cut);
-        let [moved, apart] = difference(&cut, &drawn);
-        println!("{line} after: apart {apart:e} of {moved:e} m");
+    let line = "points = [[2, 9], [9, 2.5]]";
+    let cut_stage = format!("cut = [{{ {line}, law = \"bond\" }}]\n");
+    let mut cut = blocks("", &stage("cut", &cut_stage));
+    let mut drawn = blocks(&format!("[[joint]]\n{line}\nlaw = \"bond\"\n"), "");
+    run_stage(&mut drawn);
+    run_stage(&mut cut);
+    let show = |what: &str, s: &Simulation| {
+        let b = &s.model().boundary;
+        println!("--- {what}");
+        for c in s.contacts().iter() {
+            let p = b.reference[b.nodes.point[c.history.node]];
+            let h = &c.history;
+            if b.trace[h.edge].is_some_and(|t| t.index() != 1) && p.y > 6.0 && p.x < 5.0 {
+                println!(
+                    "{:.4} {:.4} {:?} {:?} gap {:.4e} l {:.4} N {:.5e} T {:.5e} rest {:.4e} off {:.4e} sh {:.4e}",
+                    p.x,
+                    p.y,
+                    b.trace[h.edge],
+                    c.blocks(b),
+                    c.gap,
+                    c.length,
+                    h.normal_force,
+                    h.shear_force,
+                    h.unloaded.rest,
+                    h.unloaded.offset,
+                    h.sheared
+                );
+            }
+        }
+    };
+    show("before", &cut);
+    cut.next_stage().unwrap();
+    show("cut", &cut);
+    run_all(&mut cut);
+    show("rest", &cut);
+    show("drawn", &drawn);
+    let covers = &cut.model().covers;
+    for e in covers.elements() {
+        let m = |of: &Simulation| of.model().sample(e, covers.element_centroid[e], &of.state().displacement);
+        let d = m(&cut) - m(&drawn);
+        if d.norm() > 3e-5 {
+            println!("{:?} {:?} {:.2e} {:.2e}", covers.element_centroid[e], covers.element_block[e], d.x, d.y);
+        }
     }
 }

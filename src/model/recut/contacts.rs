@@ -45,17 +45,29 @@ pub fn carry_contacts(lineage: &Lineage, (old, was): (&Model, &State), new: &Mod
     }
     let carry = Carry { lineage, old, was, new, before: Before::new(old, was) };
     let softens = !was.bonds.is_empty();
-    (state.contacts, state.bonds) = carry.kept(softens);
+    let mut seeds = carry.kept();
+    seeds.extend(carry.touching(state));
+    seeds.sort_by_key(|(history, _)| key(history));
+    state.contacts = seeds.iter().map(|(history, _)| *history).collect();
+    if softens {
+        state.bonds = seeds.iter().map(|(_, bond)| *bond).collect();
+    }
     let (_, ahead) = step::look_ahead(new, AT_REST, state, true);
-    let mut loaded: Vec<Loaded> = ahead.contacts.iter().map(|contact| carry.load(contact, state)).collect();
-    carry.keep_sums(&ahead.contacts, &mut loaded);
-    for (contact, loaded) in ahead.contacts.iter().zip(&mut loaded).filter(|(_, l)| l.shares.is_some()) {
+    let load = |contact: &VertexEdge| Some((*contact, carry.load(contact, &seeds)?));
+    let mut loaded: Vec<(VertexEdge, Loaded)> = ahead.contacts.iter().filter_map(load).collect();
+    carry.keep_sums(&mut loaded);
+    for (contact, loaded) in loaded.iter_mut().filter(|(_, loaded)| loaded.shares.is_some()) {
         settle(contact, new, &mut loaded.history);
     }
-    state.contacts = loaded.iter().map(|loaded| loaded.history).collect();
+    state.contacts = loaded.iter().map(|(_, loaded)| loaded.history).collect();
     if softens {
-        state.bonds = loaded.iter().map(|loaded| loaded.bond).collect();
+        state.bonds = loaded.iter().map(|(_, loaded)| loaded.bond).collect();
     }
+}
+
+/// What tells a contact from others.
+fn key(history: &ContactHistory) -> (NodeId, SideId) {
+    (history.node, history.side)
 }
 
 /// The regime in which contacts are looked for: nothing depends on speeds.
@@ -77,11 +89,10 @@ impl Before {
         state.stage_displacement.clear();
         state.stage_force.clear();
         let (_, ahead) = step::look_ahead(old, AT_REST, &state, true);
-        let springs = ahead.contacts.iter().map(|c| ((c.history.node, c.history.side), (c.gap, c.stiffness)));
+        let springs = ahead.contacts.iter().map(|c| (key(&c.history), (c.gap, c.stiffness)));
         let springs = springs.collect();
         let mut faces: BTreeMap<Face, Vec<Bearing>> = BTreeMap::new();
         for contact in ahead.contacts.into_iter().filter(|contact| !contact.fresh) {
-            let key = |history: &ContactHistory| (history.node, history.side);
             let Ok(k) = was.contacts.binary_search_by_key(&key(&contact.history), key) else { continue };
             let bond = was.bonds.get(k).copied().unwrap_or_default();
             let face = (contact.blocks(&old.boundary), trace(&old.boundary, &contact));
@@ -106,11 +117,11 @@ struct Carry<'a> {
 }
 
 impl Carry<'_> {
-    /// Histories of contacts whose node and side the cut has left as they were, under their new numbers.
-    fn kept(&self, softens: bool) -> (Vec<ContactHistory>, Vec<BondHistory>) {
+    /// Contacts whose node and side the cut has left as they were, under their new numbers.
+    fn kept(&self) -> Vec<(ContactHistory, BondHistory)> {
         let nodes = inverse(&self.lineage.nodes, self.old.boundary.node_count(), NodeId::index);
         let sides = inverse(&self.lineage.sides, self.old.boundary.sides.ends.len(), SideId::index);
-        let mut kept: Vec<(ContactHistory, BondHistory)> = Vec::new();
+        let mut kept = Vec::new();
         for (k, history) in self.was.contacts.iter().enumerate() {
             let (node, side) = (nodes[history.node.index()], sides[history.side.index()]);
             let Some((node, side)) = node.zip(side).map(|(n, s)| (NodeId::new(n), SideId::new(s))) else { continue };
@@ -118,9 +129,46 @@ impl Carry<'_> {
             let bond = self.was.bonds.get(k).copied().unwrap_or_default();
             kept.push((ContactHistory { node, side, edge, ..*history }, self.bond_of(bond, edge)));
         }
-        kept.sort_by_key(|(history, _)| (history.node, history.side));
-        let (histories, bonds) = kept.into_iter().unzip();
-        (histories, if softens { bonds } else { Vec::new() })
+        kept
+    }
+
+    /// Contacts of new nodes and sides on faces that touch: those of the rock before it moved. A bond may have opened
+    /// since, across which no new contact would be found.
+    fn touching(&self, state: &State) -> Vec<(ContactHistory, BondHistory)> {
+        let mut unmoved = state.clone();
+        unmoved.displacement.fill(Vector::zeros());
+        unmoved.velocity.fill(Vector::zeros());
+        let (_, ahead) = step::look_ahead(self.new, AT_REST, &unmoved, true);
+        let is_new = |contact: &&VertexEdge| !self.is_known(&contact.history) && self.touches(contact);
+        let seed = |contact: &VertexEdge| {
+            let ContactHistory { node, side, edge, .. } = contact.history;
+            (ContactHistory { node, side, edge, intact: true, ..ContactHistory::default() }, BondHistory::default())
+        };
+        ahead.contacts.iter().filter(is_new).map(seed).collect()
+    }
+
+    /// Whether the cut has left node and side of a contact as they were.
+    fn is_known(&self, history: &ContactHistory) -> bool {
+        self.lineage.nodes[history.node].is_some() && self.lineage.sides[history.side].is_some()
+    }
+
+    /// Whether a contact lies on a face of the cut, or on one that has borne within a mesh size of it.
+    fn touches(&self, contact: &VertexEdge) -> bool {
+        let face = self.face(contact);
+        let at = self.new.boundary.reference[contact.point];
+        let is_near = |was: &Bearing| (was.at - at).norm() <= self.new.covers.mesh.size;
+        self.is_of_cut(face) || self.before.faces.get(&face).into_iter().flatten().any(is_near)
+    }
+
+    /// The face of a contact after the cut as it was before.
+    fn face(&self, contact: &VertexEdge) -> Face {
+        let boundary = &self.new.boundary;
+        (contact.blocks(boundary).map(|block| self.lineage.parents.blocks[block]), trace(boundary, contact))
+    }
+
+    /// Whether the cut has made a face.
+    fn is_of_cut(&self, (_, joint): Face) -> bool {
+        joint.is_some_and(|joint| joint.index() >= self.lineage.traces)
     }
 
     /// The edge of a side on which the middle of an edge before the cut lies.
@@ -140,25 +188,18 @@ impl Carry<'_> {
         BondHistory { section, ..bond }
     }
 
-    /// A contact after the cut with what it bears.
-    fn load(&self, contact: &VertexEdge, state: &State) -> Loaded {
-        let key = |history: &ContactHistory| (history.node, history.side);
-        if !contact.fresh {
-            let k = state.contacts.binary_search_by_key(&key(&contact.history), key).unwrap_or_default();
-            let bond = state.bonds.get(k).copied().unwrap_or_default();
-            let mut history = state.contacts[k];
+    /// A contact after the cut with what it bears; none where the next step is to find it by itself.
+    fn load(&self, contact: &VertexEdge, seeds: &[(ContactHistory, BondHistory)]) -> Option<Loaded> {
+        let face = self.face(contact);
+        if self.is_known(&contact.history) {
+            let k = seeds.binary_search_by_key(&key(&contact.history), |(history, _)| key(history)).ok()?;
+            let (mut history, bond) = seeds[k];
             if history.normal_force != 0.0 && !self.is_as_before(contact) {
                 settle(contact, self.new, &mut history);
             }
-            return Loaded { history, bond, shares: None };
+            return Some(Loaded { history, bond, shares: None });
         }
-        let boundary = &self.new.boundary;
-        let joint = trace(boundary, contact);
-        let blocks = contact.blocks(boundary).map(|block| self.lineage.parents.blocks[block]);
-        if joint.is_some_and(|joint| joint.index() >= self.lineage.traces) {
-            return self.on_new_face(contact, blocks);
-        }
-        self.on_old_face(contact, (blocks, joint))
+        if self.is_of_cut(face) { Some(self.on_new_face(contact, face)) } else { self.on_old_face(contact, face) }
     }
 
     /// Whether a contact that goes on has the springs and the gap that it had.
@@ -169,7 +210,7 @@ impl Carry<'_> {
     }
 
     /// A contact on a face that the cut has made bears the stress that the rock has there.
-    fn on_new_face(&self, contact: &VertexEdge, [block, _]: [BlockId; 2]) -> Loaded {
+    fn on_new_face(&self, contact: &VertexEdge, ([block, _], _): Face) -> Loaded {
         let [xx, yy, xy] = self.stress_about(contact, block);
         let normal = contact.normal;
         let traction = Vector::new(xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y) * contact.length;
@@ -201,14 +242,12 @@ impl Carry<'_> {
     }
 
     /// A contact on a face that was there takes its part of what the contacts about it have borne.
-    fn on_old_face(&self, contact: &VertexEdge, face: Face) -> Loaded {
+    fn on_old_face(&self, contact: &VertexEdge, face: Face) -> Option<Loaded> {
         let at = self.new.boundary.reference[contact.point];
         let is_of_face = |was: &&Bearing| was.contact.normal.dot(&contact.normal) > ONE_FACE;
         let mut near: Vec<&Bearing> = self.before.faces.get(&face).into_iter().flatten().filter(is_of_face).collect();
         near.sort_by(|a, b| (a.at - at).norm().total_cmp(&(b.at - at).norm()));
-        let Some(first) = near.first() else {
-            return Loaded { history: contact.history, bond: BondHistory::default(), shares: None };
-        };
+        let first = near.first()?;
         let beyond = near.iter().find(|other| (other.at - at).dot(&(first.at - at)) < 0.0);
         let share = beyond.map_or(0.0, |other| {
             let [near, far] = [first.at, other.at].map(|place| (place - at).norm());
@@ -232,15 +271,15 @@ impl Carry<'_> {
         };
         let lengths = [contact.length, contact.bonded];
         let bond = self.bond_of(BondHistory { lengths, ..first.bond }, edge);
-        Loaded { history, bond, shares: Some(face) }
+        Some(Loaded { history, bond, shares: Some(face) })
     }
 
     /// Spreads what contacts that take the place of others bear less than these over them by their lengths, so that
     /// each face carries what it did.
-    fn keep_sums(&self, contacts: &[VertexEdge], loaded: &mut [Loaded]) {
+    fn keep_sums(&self, loaded: &mut [(VertexEdge, Loaded)]) {
         let forces = |history: &ContactHistory| Vector::new(history.normal_force, history.shear_force);
         let mut missing: BTreeMap<Face, (Vector, f64)> = BTreeMap::new();
-        for (contact, loaded) in contacts.iter().zip(&*loaded) {
+        for (contact, loaded) in &*loaded {
             if let Some(face) = loaded.shares {
                 missing.entry(face).or_default().1 += contact.length;
             }
@@ -248,14 +287,12 @@ impl Carry<'_> {
         for (face, (sum, _)) in &mut missing {
             *sum = self.before.faces[face].iter().map(|was| forces(&was.contact.history)).sum();
         }
-        let boundary = &self.new.boundary;
-        for (contact, loaded) in contacts.iter().zip(&*loaded) {
-            let blocks = contact.blocks(boundary).map(|block| self.lineage.parents.blocks[block]);
-            if let Some((sum, _)) = missing.get_mut(&(blocks, trace(boundary, contact))) {
+        for (contact, loaded) in &*loaded {
+            if let Some((sum, _)) = missing.get_mut(&self.face(contact)) {
                 *sum -= forces(&loaded.history);
             }
         }
-        for (contact, loaded) in contacts.iter().zip(loaded) {
+        for (contact, loaded) in loaded {
             let Some((sum, length)) = loaded.shares.map(|face| missing[&face]) else { continue };
             let own = sum * (contact.length / length);
             loaded.history.normal_force += own.x;
