@@ -132,19 +132,16 @@ impl Carry<'_> {
         kept
     }
 
-    /// Contacts of new nodes and sides on faces that touch: those of the rock before it moved. A bond may have opened
-    /// since, across which no new contact would be found.
+    /// Contacts of new nodes and sides on faces that touch: those of the rock before it moved, with what they bear now.
+    /// A bond may have opened since, and no new contact would be found across it, but one that pulls is kept.
     fn touching(&self, state: &State) -> Vec<(ContactHistory, BondHistory)> {
         let mut unmoved = state.clone();
         unmoved.displacement.fill(Vector::zeros());
         unmoved.velocity.fill(Vector::zeros());
         let (_, ahead) = step::look_ahead(self.new, AT_REST, &unmoved, true);
         let is_new = |contact: &&VertexEdge| !self.is_known(&contact.history) && self.touches(contact);
-        let seed = |contact: &VertexEdge| {
-            let ContactHistory { node, side, edge, .. } = contact.history;
-            (ContactHistory { node, side, edge, intact: true, ..ContactHistory::default() }, BondHistory::default())
-        };
-        ahead.contacts.iter().filter(is_new).map(seed).collect()
+        let loaded = ahead.contacts.iter().filter(is_new).filter_map(|contact| self.bears(contact));
+        loaded.map(|loaded| (loaded.history, loaded.bond)).collect()
     }
 
     /// Whether the cut has left node and side of a contact as they were.
@@ -190,7 +187,6 @@ impl Carry<'_> {
 
     /// A contact after the cut with what it bears; none where the next step is to find it by itself.
     fn load(&self, contact: &VertexEdge, seeds: &[(ContactHistory, BondHistory)]) -> Option<Loaded> {
-        let face = self.face(contact);
         if self.is_known(&contact.history) {
             let k = seeds.binary_search_by_key(&key(&contact.history), |(history, _)| key(history)).ok()?;
             let (mut history, bond) = seeds[k];
@@ -199,6 +195,12 @@ impl Carry<'_> {
             }
             return Some(Loaded { history, bond, shares: None });
         }
+        self.bears(contact)
+    }
+
+    /// What a contact of a new node or side bears.
+    fn bears(&self, contact: &VertexEdge) -> Option<Loaded> {
+        let face = self.face(contact);
         if self.is_of_cut(face) { Some(self.on_new_face(contact, face)) } else { self.on_old_face(contact, face) }
     }
 
