@@ -124,7 +124,7 @@ fn a_cut_and_an_excavation_end_where_the_drawn_joint_does() {
 /// ends on faces of the outline and, as a crack, in the rock.
 #[test]
 fn a_cut_whose_bond_holds_leaves_the_rock_at_rest() {
-    for line in ["points = [[4, 9], [11, 3]]", "points = [[4, 9], [7, 3]]"] {
+    for line in ["points = [[4, 9], [11, 3]]", "points = [[4, 9], [7, 3]]", "points = [[2, 9], [9, 2.5]]"] {
         let dynamic = format!(
             "[[stage]]\nname = \"cut\"\nkind = \"dynamic\"\nduration = 0.05\n\
              cut = [{{ {line}, law = \"bond\" }}]\n"

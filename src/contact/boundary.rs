@@ -8,6 +8,7 @@ use crate::geometry::{Point, TraceId, Vector, id};
 
 use super::DetectionRule;
 use super::constants::BOUNDARY_ROUND_OFF;
+use super::kept_nodes::KeptNodes;
 
 id! {
     /// A node of the boundary: a point of it that may touch edges.
@@ -106,20 +107,35 @@ pub struct SideEnd {
 }
 
 /// A point of a loop while it is laid out: the piece that starts there and the turn onto it.
-struct Station {
-    piece: BoundaryPiece,
+pub(super) struct Station {
+    pub piece: BoundaryPiece,
     turn: f64,
-    node: bool,
+    pub node: bool,
     corner: bool,
+    /// Whether the piece lies on a face that keeps its nodes.
+    pub kept: bool,
+}
+
+impl Station {
+    /// Both parts of its piece, with a node between them.
+    pub fn split(self, at: Point) -> (Self, Self) {
+        let piece = |a, b| BoundaryPiece { a, b, ..self.piece };
+        let rest = Self { piece: piece(at, self.piece.b), turn: 0.0, node: true, corner: false, kept: self.kept };
+        (Self { piece: piece(self.piece.a, at), ..self }, rest)
+    }
 }
 
 impl Boundary {
     /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
-    pub fn new(covers: &Covers, outlines: &Outlines, rule: &DetectionRule) -> Self {
+    /// Faces from before a cut have the nodes that they had, and those at its ends.
+    pub fn new(covers: &Covers, outlines: &Outlines, rule: &DetectionRule, kept: Option<&KeptNodes>) -> Self {
         let mut boundary = Self::default();
         let carrier = covers.carriers();
         for k in 0..outlines.len() {
             let mut stations = stations(outlines.of_loop(k), rule);
+            if let Some(kept) = kept {
+                stations = kept.mark(stations);
+            }
             place_nodes(&mut stations, covers.mesh.size, rule);
             boundary.push_loop(covers, &carrier, outlines.loop_block[k], &stations);
         }
@@ -303,6 +319,7 @@ fn stations(pieces: &[BoundaryPiece], rule: &DetectionRule) -> Vec<Station> {
                 turn,
                 node: turn.abs() > rule.kink_angle,
                 corner: turn.abs() > rule.corner_angle,
+                kept: false,
             }
         })
         .collect();
@@ -333,7 +350,11 @@ fn place_nodes(stations: &mut Vec<Station>, size: f64, rule: &DetectionRule) {
         while let Some(next) = spans.next_if(|s| !s.node) {
             span.push(next);
         }
-        divide(span, size, rule.node_snap, &mut placed);
+        if span[0].kept {
+            placed.append(&mut span);
+        } else {
+            divide(span, size, rule.node_snap, &mut placed);
+        }
     }
     *stations = placed;
 }
@@ -365,11 +386,10 @@ fn divide(mut span: Vec<Station>, size: f64, snap: f64, placed: &mut Vec<Station
         let mut from = ends[0];
         while let Some(cut) = cuts.next_if(|&cut| cut < ends[1]) {
             let along = (cut - from) / (ends[1] - from);
-            let split = station.piece.a + (station.piece.b - station.piece.a) * along;
-            let rest = BoundaryPiece { a: split, ..station.piece };
-            station.piece.b = split;
-            placed.push(station);
-            station = Station { piece: rest, turn: 0.0, node: true, corner: false };
+            let at = station.piece.a + (station.piece.b - station.piece.a) * along;
+            let (first, rest) = station.split(at);
+            placed.push(first);
+            station = rest;
             from = cut;
         }
         placed.push(station);

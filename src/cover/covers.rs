@@ -149,7 +149,7 @@ impl Covers {
     }
 
     /// Elements that come within `reach` (m) of a point, and some more.
-    pub(super) fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = ElementId> {
+    pub fn around(&self, p: Point, reach: f64) -> impl Iterator<Item = ElementId> {
         let Triangle { i, j, .. } = self.mesh.locate(p);
         // A lattice row is 0.866 of the mesh size high.
         let rings = 1 + (1.2 * reach / self.mesh.size).min(1e6) as i32;

@@ -8,7 +8,6 @@ mod host;
 mod mesh;
 mod order;
 mod outlines;
-mod parents;
 mod union_find;
 
 pub use covers::Covers;
@@ -16,7 +15,6 @@ pub use crumbs::{Crumb, CrumbRule, join_crumbs};
 pub use cut::cut;
 pub use mesh::{RegularMesh, Triangle};
 pub use outlines::{BoundaryPiece, Outlines};
-pub use parents::Parents;
 pub use union_find::UnionFind;
 
 use crate::geometry::{Vector, id};

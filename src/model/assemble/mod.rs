@@ -19,8 +19,8 @@ mod stage;
 mod warnings;
 
 use crate::contact::{
-    BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
-    Support,
+    BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, KeptNodes, LawId, Resistance, Roughness, Sections,
+    Softening, Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::ends::EndDistances;
@@ -72,15 +72,15 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// Builds the model of a case as cuts leave it, and its state at the start; `tell` is called with every part of the
-/// build as it begins.
+/// Builds the model of a case as cuts leave it, and its state at the start; the boundary before the last of the cuts
+/// keeps its nodes. `tell` is called with every part of the build as it begins.
 ///
 /// # Errors
 /// The first key of the case that does not fit the model: integrator, geometry, references to positions without rock,
 /// memory.
 pub fn build(
     case: &Case,
-    cuts: &[Cut],
+    (cuts, before): (&[Cut], Option<&Boundary>),
     integrators: &dyn Integrators,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Built, State), Invalid> {
@@ -97,7 +97,7 @@ pub fn build(
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines), tolerance, tell)?;
+    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines, before), tolerance, tell)?;
     model.integrator =
         integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
     let bridges = sections::of_bridges(case, &joints, &mut model);
@@ -146,16 +146,16 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 fn model(
     case: &Case,
     joints: &Joints,
-    (covers, outlines): (Covers, &Outlines),
+    (covers, outlines, before): (Covers, &Outlines, Option<&Boundary>),
     tolerance: f64,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
     let positions = Locator { covers: &covers, outlines, tolerance };
     let (rocks, element_rock, averaging) = rock::of_elements(case, &positions)?;
-    let ground = quiet::Ground { case, positions: &positions, rocks: &rocks, element_rock: &element_rock };
-    let (fixities, supports, fixed_supports, quiets) = held(&ground)?;
+    let (fixities, supports, fixed_supports, quiets) = held(case, &positions, &rocks, &element_rock)?;
     tell(BuildStage::Boundary);
-    let boundary = Boundary::new(&covers, outlines, &DetectionRule::default());
+    let kept = before.map(|before| KeptNodes::new(before, tolerance));
+    let boundary = Boundary::new(&covers, outlines, &DetectionRule::default(), kept.as_ref());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary, &quiets.quiets)?;
@@ -206,8 +206,14 @@ fn model(
 }
 
 /// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
-fn held(ground: &quiet::Ground) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
-    let (mut fixities, mut supports) = fixities(ground.case, ground.positions, ground.stiffness())?;
+fn held(
+    case: &Case,
+    positions: &Locator,
+    rocks: &[Elasticity],
+    element_rock: &[u16],
+) -> Result<(Vec<Fixity>, Vec<Support>, u32, quiet::Quiets), Invalid> {
+    let ground = quiet::Ground { case, positions, rocks, element_rock };
+    let (mut fixities, mut supports) = fixities(case, positions, ground.stiffness())?;
     let of_case = supports.len() as u32;
     let quiets = ground.quiets(&mut fixities, &mut supports)?;
     Ok((fixities, supports, of_case, quiets))

@@ -190,8 +190,8 @@ impl Carry<'_> {
         if self.is_known(&contact.history) {
             let k = seeds.binary_search_by_key(&key(&contact.history), |(history, _)| key(history)).ok()?;
             let (mut history, bond) = seeds[k];
-            if history.normal_force != 0.0 && !self.is_as_before(contact) {
-                settle(contact, self.new, &mut history);
+            if history.normal_force != 0.0 {
+                self.go_on(contact, &mut history);
             }
             return Some(Loaded { history, bond, shares: None });
         }
@@ -204,11 +204,21 @@ impl Carry<'_> {
         if self.is_of_cut(face) { Some(self.on_new_face(contact, face)) } else { self.on_old_face(contact, face) }
     }
 
-    /// Whether a contact that goes on has the springs and the gap that it had.
-    fn is_as_before(&self, contact: &VertexEdge) -> bool {
+    /// Gives a contact that goes on with another length, beside a node that the cut has made, its part of the forces.
+    fn go_on(&self, contact: &VertexEdge, history: &mut ContactHistory) {
         let ContactHistory { node, side, .. } = contact.history;
         let was = self.lineage.nodes[node].zip(self.lineage.sides[side]);
-        was.and_then(|was| self.before.springs.get(&was)) == Some(&(contact.gap, contact.stiffness))
+        let was = was.and_then(|was| self.before.springs.get(&was));
+        if was == Some(&(contact.gap, contact.stiffness)) {
+            return;
+        }
+        if let Some((_, stiffness)) = was {
+            let share = contact.stiffness[0] / stiffness[0];
+            history.normal_force *= share;
+            history.shear_force *= share;
+            history.filtered_normal *= share;
+        }
+        settle(contact, self.new, history);
     }
 
     /// A contact on a face that the cut has made bears the stress that the rock has there.
@@ -260,7 +270,7 @@ impl Carry<'_> {
             at(first) * (1.0 - share) + beyond.map_or(0.0, |other| at(other) * share)
         };
         let ContactHistory { node, side, edge, share: strength, .. } = contact.history;
-        let history = ContactHistory {
+        let mut history = ContactHistory {
             node,
             side,
             edge,
@@ -273,7 +283,17 @@ impl Carry<'_> {
         };
         let lengths = [contact.length, contact.bonded];
         let bond = self.bond_of(BondHistory { lengths, ..first.bond }, edge);
-        Some(Loaded { history, bond, shares: Some(face) })
+        let law = &self.new.laws[contact.law];
+        let is_spring = !law.penalty[0] && law.closure_max.is_infinite() && law.softening.is_none();
+        if is_spring {
+            let rest = |of: &Bearing| of.contact.history.unloaded.gap();
+            let rest = rest(first) * (1.0 - share) + beyond.map_or(0.0, |other| rest(other) * share);
+            let pull = if history.normal_force < 0.0 { f64::NEG_INFINITY } else { 0.0 };
+            history.normal_force = (contact.stiffness[0] * (rest - gap(contact))).max(pull);
+            history.unloaded = Unloaded { offset: 0.0, rest };
+            history.sheared = history.shear_force / contact.stiffness[1];
+        }
+        Some(Loaded { history, bond, shares: (!is_spring).then_some(face) })
     }
 
     /// Spreads what contacts that take the place of others bear less than these over them by their lengths, so that
@@ -303,12 +323,15 @@ impl Carry<'_> {
     }
 }
 
+/// Gap between node and edge of a contact (m), wherever its spring is unloaded.
+fn gap(contact: &VertexEdge) -> f64 {
+    contact.gap + contact.history.unloaded.gap()
+}
+
 /// Gives the springs of a contact the rest lengths at which they carry its forces where it is.
 fn settle(contact: &VertexEdge, model: &Model, history: &mut ContactHistory) {
-    let Unloaded { offset, rest } = contact.history.unloaded;
     let closure = Closure { stiffness: contact.stiffness[0], most: model.laws[contact.law].closure_max };
-    let gap = contact.gap - offset + rest;
-    history.unloaded = Unloaded { offset: 0.0, rest: gap + closure.under(history.normal_force) };
+    history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) + closure.under(history.normal_force) };
     history.sheared = history.shear_force / contact.stiffness[1];
 }
 

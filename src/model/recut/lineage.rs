@@ -1,11 +1,12 @@
 //! Where the parts of a model that a stage has cut come from.
 
 use crate::contact::{BoltSegment, EdgeId, NodeId, Section, SideId, Support};
-use crate::cover::{BlockId, Parents};
+use crate::cover::BlockId;
 use crate::geometry::{Point, segment};
 use crate::model::assemble::Built;
 use crate::state::Model;
 
+use super::parents::Parents;
 use super::places::{nodes, sides};
 
 /// For each part of a model after a cut that of the model before: blocks and covers always have one.

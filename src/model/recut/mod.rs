@@ -6,6 +6,7 @@
 mod carry;
 mod contacts;
 mod lineage;
+mod parents;
 mod places;
 
 use std::sync::Arc;
@@ -35,14 +36,14 @@ pub fn grounds(
     integrators: &dyn Integrators,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Vec<Ground>, State), Invalid> {
-    let (built, state) = build(case, &Cut::up_to(case, 0), integrators, tell)?;
+    let (built, state) = build(case, (&Cut::up_to(case, 0), None), integrators, tell)?;
     let mut grounds = vec![Ground { built: Arc::new(built), lineage: None }];
     for (k, stage) in case.stages.iter().enumerate().skip(1) {
         let before = grounds[k - 1].built.clone();
         grounds.push(if stage.cuts.is_empty() {
             Ground { built: before, lineage: None }
         } else {
-            let (mut built, _) = build(case, &Cut::up_to(case, k), integrators, tell)?;
+            let (mut built, _) = build(case, (&Cut::up_to(case, k), Some(&before.model.boundary)), integrators, tell)?;
             let refused = |message| Invalid { key: format!("stage[{k}].cut"), message };
             let lineage = Lineage::new(&before, &built).map_err(refused)?;
             built.model.labels = lineage.labels(&before.model, &built.model);

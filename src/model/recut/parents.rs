@@ -1,9 +1,7 @@
 //! Where elements, covers and blocks come from when more cuts part the same rock on the same mesh.
 
+use crate::cover::{BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, polygon};
-
-use super::covers::Covers;
-use super::{BlockId, CoverId, ElementId};
 
 /// For each element, cover and block of the finer covers that of the coarser ones which it was a part of.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +22,7 @@ impl Parents {
     /// See above.
     pub fn of(coarse: &Covers, fine: &Covers) -> Result<Self, Point> {
         let place = |e: ElementId| fine.element_centroid[e];
-        let elements = fine.elements().map(|e| coarse.parent(fine, e).ok_or_else(|| place(e)));
+        let elements = fine.elements().map(|e| parent(coarse, fine, e).ok_or_else(|| place(e)));
         let elements = elements.collect::<Result<Vec<ElementId>, Point>>()?;
         let mut covers = vec![None; fine.cover_count()];
         let mut blocks = vec![None; fine.block_count()];
@@ -67,23 +65,21 @@ impl Parents {
     }
 }
 
-impl Covers {
-    /// The element of which an element of finer covers is a part: that of the same triangle of the mesh and with the
-    /// same polygon, or else the one that holds a point inside.
-    fn parent(&self, fine: &Self, e: ElementId) -> Option<ElementId> {
-        let (triangle, centroid) = (fine.element_triangle[e], fine.element_centroid[e]);
-        let candidates = || self.around(centroid, 0.0).filter(|&c| self.element_triangle[c] == triangle);
-        let is_whole = |c: &ElementId| {
-            (self.element_centroid[*c] - centroid).norm() <= SAME * self.mesh.size
-                && (self.element_area[*c] / fine.element_area[e] - 1.0).abs() <= SAME
-        };
-        candidates().find(is_whole).or_else(|| {
-            let area = |t: &[Point; 3]| polygon::area(t);
-            let largest = polygon::triangles(fine.polygon(e)).into_iter().max_by(|a, b| area(a).total_cmp(&area(b)))?;
-            let inside = largest.iter().sum::<Point>() / 3.0;
-            candidates().find(|&c| polygon::contains(self.polygon(c), inside))
-        })
-    }
+/// The element of which an element of finer covers is a part: that of the same triangle of the mesh and with the same
+/// polygon, or else the one that holds a point inside.
+fn parent(coarse: &Covers, fine: &Covers, e: ElementId) -> Option<ElementId> {
+    let (triangle, centroid) = (fine.element_triangle[e], fine.element_centroid[e]);
+    let candidates = || coarse.around(centroid, 0.0).filter(|&c| coarse.element_triangle[c] == triangle);
+    let is_whole = |c: &ElementId| {
+        (coarse.element_centroid[*c] - centroid).norm() <= SAME * coarse.mesh.size
+            && (coarse.element_area[*c] / fine.element_area[e] - 1.0).abs() <= SAME
+    };
+    candidates().find(is_whole).or_else(|| {
+        let area = |t: &[Point; 3]| polygon::area(t);
+        let largest = polygon::triangles(fine.polygon(e)).into_iter().max_by(|a, b| area(a).total_cmp(&area(b)))?;
+        let inside = largest.iter().sum::<Point>() / 3.0;
+        candidates().find(|&c| polygon::contains(coarse.polygon(c), inside))
+    })
 }
 
 /// Gives a part its parent; whether it has no other.
