@@ -21,13 +21,13 @@ fn no_angle_decides_what_a_corner_is() {
         let outlines = outlines(&case).unwrap_or_else(|e| panic!("{e}"));
         let simulation = Simulation::new(case).unwrap_or_else(|e| panic!("{e}"));
         let covers = &simulation.model().covers;
-        let usual = Boundary::new(covers, &outlines, &DetectionRule::default(), None);
+        let usual = Boundary::new(covers, &outlines, &DetectionRule::default());
         assert_eq!(usual.nodes.point, simulation.model().boundary.nodes.point, "{name}");
         for (constant, of) in constants {
             for factor in [0.5, 2.0] {
                 let mut rule = DetectionRule::default();
                 *of(&mut rule) *= factor;
-                let other = Boundary::new(covers, &outlines, &rule, None);
+                let other = Boundary::new(covers, &outlines, &rule);
                 assert_eq!(other.sides.previous, usual.sides.previous, "{name}: sides with {factor} {constant}");
                 assert_eq!(other.node_count(), usual.node_count(), "{name}: nodes with {factor} {constant}");
                 let place = |boundary: &Boundary, node: usize| boundary.reference[boundary.nodes.point[node]];

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Rooms of `src/` in rank order, each with its most lines; each imports only from those before it.
-const ROOMS: [(&str, usize); 9] = [
+const ROOMS: [(&str, usize); 10] = [
     ("geometry", 3450),
     ("cover", 1300),
     ("rock", 1400),
@@ -15,7 +15,8 @@ const ROOMS: [(&str, usize); 9] = [
     ("contact", 7650),
     ("state", 2050),
     ("step", 3400),
-    ("model", 5800),
+    ("recut", 900),
+    ("model", 6000),
     ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;

@@ -3,12 +3,11 @@
 
 use std::ops::Range;
 
-use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, Outlines, Weights};
+use crate::cover::{self, BlockId, BoundaryPiece, CoverId, Covers, ElementId, NodePlaces, Outlines, Weights};
 use crate::geometry::{Point, TraceId, Vector, id};
 
 use super::DetectionRule;
 use super::constants::BOUNDARY_ROUND_OFF;
-use super::kept_nodes::KeptNodes;
 
 id! {
     /// A node of the boundary: a point of it that may touch edges.
@@ -107,35 +106,21 @@ pub struct SideEnd {
 }
 
 /// A point of a loop while it is laid out: the piece that starts there and the turn onto it.
-pub(super) struct Station {
-    pub piece: BoundaryPiece,
+struct Station {
+    piece: BoundaryPiece,
     turn: f64,
-    pub node: bool,
+    node: bool,
     corner: bool,
-    /// Whether the piece lies on a face that keeps its nodes.
-    pub kept: bool,
-}
-
-impl Station {
-    /// Both parts of its piece, with a node between them.
-    pub fn split(self, at: Point) -> (Self, Self) {
-        let piece = |a, b| BoundaryPiece { a, b, ..self.piece };
-        let rest = Self { piece: piece(at, self.piece.b), turn: 0.0, node: true, corner: false, kept: self.kept };
-        (Self { piece: piece(self.piece.a, at), ..self }, rest)
-    }
 }
 
 impl Boundary {
-    /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart.
-    /// Faces from before a cut have the nodes that they had, and those at its ends.
-    pub fn new(covers: &Covers, outlines: &Outlines, rule: &DetectionRule, kept: Option<&KeptNodes>) -> Self {
+    /// Lays nodes and edges along the boundary loops: a node at every corner and kink and at most a mesh size apart,
+    /// but none between those that a piece keeps.
+    pub fn new(covers: &Covers, outlines: &Outlines, rule: &DetectionRule) -> Self {
         let mut boundary = Self::default();
         let carrier = covers.carriers();
         for k in 0..outlines.len() {
             let mut stations = stations(outlines.of_loop(k), rule);
-            if let Some(kept) = kept {
-                stations = kept.mark(stations);
-            }
             place_nodes(&mut stations, covers.mesh.size, rule);
             boundary.push_loop(covers, &carrier, outlines.loop_block[k], &stations);
         }
@@ -317,9 +302,8 @@ fn stations(pieces: &[BoundaryPiece], rule: &DetectionRule) -> Vec<Station> {
             Station {
                 piece: pieces[k],
                 turn,
-                node: turn.abs() > rule.kink_angle,
+                node: turn.abs() > rule.kink_angle || pieces[k].nodes == NodePlaces::Kept { at_start: true },
                 corner: turn.abs() > rule.corner_angle,
-                kept: false,
             }
         })
         .collect();
@@ -350,10 +334,9 @@ fn place_nodes(stations: &mut Vec<Station>, size: f64, rule: &DetectionRule) {
         while let Some(next) = spans.next_if(|s| !s.node) {
             span.push(next);
         }
-        if span[0].kept {
-            placed.append(&mut span);
-        } else {
-            divide(span, size, rule.node_snap, &mut placed);
+        match span[0].piece.nodes {
+            NodePlaces::Even => divide(span, size, rule.node_snap, &mut placed),
+            NodePlaces::Kept { .. } => placed.append(&mut span),
         }
     }
     *stations = placed;
@@ -386,10 +369,11 @@ fn divide(mut span: Vec<Station>, size: f64, snap: f64, placed: &mut Vec<Station
         let mut from = ends[0];
         while let Some(cut) = cuts.next_if(|&cut| cut < ends[1]) {
             let along = (cut - from) / (ends[1] - from);
-            let at = station.piece.a + (station.piece.b - station.piece.a) * along;
-            let (first, rest) = station.split(at);
-            placed.push(first);
-            station = rest;
+            let split = station.piece.a + (station.piece.b - station.piece.a) * along;
+            let rest = BoundaryPiece { a: split, ..station.piece };
+            station.piece.b = split;
+            placed.push(station);
+            station = Station { piece: rest, turn: 0.0, node: true, corner: false };
             from = cut;
         }
         placed.push(station);

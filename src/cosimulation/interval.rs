@@ -216,7 +216,10 @@ impl Cosimulation {
         let (model, events) = (self.simulation.model(), &self.simulation.state().events.list);
         let mass = |events: &[Event]| -> f64 {
             let failed = events.iter().filter(|event| event.kind == EventKind::Failed);
-            failed.filter_map(|event| model.labelled(event.subject)).map(|block| model.mass_matrix.total[block]).sum()
+            failed
+                .filter_map(|event| self.simulation.block_labelled(event.subject))
+                .map(|block| model.mass_matrix.total[block])
+                .sum()
         };
         let before = mass(&events[..interval.events_before.min(events.len())]);
         let is_new = events.iter().skip(interval.events_before).any(|event| event.kind == EventKind::Failed);

@@ -14,7 +14,7 @@ pub use covers::Covers;
 pub use crumbs::{Crumb, CrumbRule, join_crumbs};
 pub use cut::cut;
 pub use mesh::{RegularMesh, Triangle};
-pub use outlines::{BoundaryPiece, Outlines};
+pub use outlines::{BoundaryPiece, NodePlaces, Outlines};
 pub use union_find::UnionFind;
 
 use crate::geometry::{Vector, id};

@@ -18,6 +18,20 @@ pub struct BoundaryPiece {
     pub opposite: Option<ElementId>,
     /// Whether both sides belong to one block.
     pub partial: bool,
+    /// Where contact lays its nodes.
+    pub nodes: NodePlaces,
+}
+
+/// Where the nodes of contact lie on a piece of boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NodePlaces {
+    /// At corners and kinks, and evenly between them.
+    Even,
+    /// At corners and kinks, and at its start alone or nowhere else: where they were before a cut.
+    Kept {
+        /// Whether there is one at the start.
+        at_start: bool,
+    },
 }
 
 /// Boundary loops stored end to end, ordered by block; rock on the left.
@@ -76,7 +90,15 @@ impl Outlines {
                 let opposite = element(h.twin());
                 let partial = opposite.is_some_and(|other| block(other) == block(own));
                 let trace = arrangement.label_of(h).trace.filter(|_| opposite.is_some());
-                outlines.pieces.push(BoundaryPiece { a, b, element: own, trace, opposite, partial });
+                outlines.pieces.push(BoundaryPiece {
+                    a,
+                    b,
+                    element: own,
+                    trace,
+                    opposite,
+                    partial,
+                    nodes: NodePlaces::Even,
+                });
                 h = next_boundary(arrangement, h);
             }
             outlines.loop_start.push(outlines.pieces.len() as u32);

@@ -6,6 +6,7 @@ use std::fmt;
 use crate::contact::ContactState;
 use crate::cover::{BlockId, ElementId};
 use crate::geometry::{Point, Vector, polygon};
+use crate::state::Model;
 
 use super::Simulation;
 use super::case::StageKind;
@@ -33,8 +34,8 @@ pub struct SlopeFailure {
 pub struct Farthest {
     /// Its displacement (m).
     pub displacement: f64,
-    /// Its block.
-    pub block: BlockId,
+    /// Number of its block, as hosts see it.
+    pub block: u32,
     /// Centroid where the motion began (m).
     pub place: Point,
 }
@@ -82,7 +83,8 @@ impl Simulation {
     /// few blocks that went farthest ([`Simulation::mass_of_few`]).
     pub fn failure_since(&self, began: &[Vector], is_at_rest: bool) -> Option<SlopeFailure> {
         let bodies = self.bodies(began);
-        let farthest = bodies.first().filter(|body| body.way() > self.failure_distance(is_at_rest))?.farthest();
+        let first = bodies.first().filter(|body| body.way() > self.failure_distance(is_at_rest))?;
+        let farthest = first.farthest(self.model());
         let taking_part = || bodies.iter().filter(|body| body.way() > SLIGHT * farthest.displacement);
         let mut blocks: Vec<BlockId> = taking_part().map(|body| body.block).collect();
         blocks.sort_unstable();
@@ -114,7 +116,7 @@ impl Simulation {
 
     /// The rock that has moved farthest since its covers had other displacements (m); none where nothing can move.
     pub fn farthest_since(&self, began: &[Vector]) -> Option<Farthest> {
-        self.bodies(began).first().map(Body::farthest)
+        self.bodies(began).first().map(|body| body.farthest(self.model()))
     }
 
     /// Whether the static stage in progress will not come to rest: rock has failed, gravity acts in full, and the rock
@@ -279,7 +281,7 @@ impl Simulation {
 }
 
 impl Body {
-    fn farthest(&self) -> Farthest {
-        Farthest { displacement: self.way(), block: self.block, place: self.motion.centroid }
+    fn farthest(&self, model: &Model) -> Farthest {
+        Farthest { displacement: self.way(), block: model.labels[self.block], place: self.motion.centroid }
     }
 }

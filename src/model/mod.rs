@@ -3,11 +3,11 @@
 pub mod assemble;
 mod failure;
 pub mod fit;
+mod grounds;
 mod looks;
 pub mod mechanism;
 mod observe;
 pub mod overlap;
-mod recut;
 mod rest;
 mod restless;
 pub mod settle;

@@ -53,8 +53,8 @@ pub struct ContactView {
     pub state: ContactState,
     /// Joint law.
     pub law: LawId,
-    /// Blocks of the node and of the edge.
-    pub blocks: [BlockId; 2],
+    /// Numbers of the blocks of the node and of the edge.
+    pub blocks: [u32; 2],
     /// Node now (m).
     pub position: Point,
     /// Outward unit normal of the edge now.
@@ -197,6 +197,11 @@ impl Simulation {
         if self.knows_contacts() { self.state().contacts.len() } else { self.contact_views(serial).len() }
     }
 
+    /// The block with a number that hosts see, if there is one now.
+    pub fn block_labelled(&self, label: u32) -> Option<BlockId> {
+        self.model().labels.iter().position(|&own| own == label).map(BlockId::new)
+    }
+
     /// The contacts of the last step at their places now, worked out at the first look after a step. Before the first
     /// step of a stage they are those that this step will find. With `serial` on the calling thread alone.
     pub fn contact_views(&self, serial: bool) -> &[ContactView] {
@@ -233,7 +238,7 @@ impl Simulation {
         ContactView {
             state: contact.state,
             law,
-            blocks: self.blocks_of(contact),
+            blocks: self.blocks_of(contact).map(|block| model.labels[block]),
             position: self.position(model.boundary.nodes.point[contact.node]),
             normal: self.normal_of(contact.edge),
             length,
@@ -247,7 +252,7 @@ impl Simulation {
         ContactView {
             state: contact.history.state,
             law: contact.law,
-            blocks: contact.blocks(&self.model().boundary),
+            blocks: contact.blocks(&self.model().boundary).map(|block| self.model().labels[block]),
             position: self.position(contact.point),
             normal: contact.normal,
             length: contact.length,

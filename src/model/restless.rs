@@ -17,6 +17,8 @@ const MOVES: f64 = 0.1;
 pub struct Restless {
     /// The block.
     pub block: BlockId,
+    /// Its number, as hosts see it.
+    pub label: u32,
     /// Its area (m²).
     pub area: f64,
     /// Its centroid now (m).
@@ -29,8 +31,8 @@ pub struct Restless {
 
 impl fmt::Display for Restless {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { block, area, place, speed, law } = self;
-        write!(f, "block {block} of {area:.3} m² at ({:.3}, {:.3}) m, {speed:.2e} m/s, ", place.x, place.y)?;
+        let Self { label, area, place, speed, law, .. } = self;
+        write!(f, "block {label} of {area:.3} m² at ({:.3}, {:.3}) m, {speed:.2e} m/s, ", place.x, place.y)?;
         match law {
             Some(law) => write!(f, "on a joint of law {law:?}"),
             None => write!(f, "in free flight"),
@@ -82,6 +84,7 @@ impl Simulation {
         let law = bearing.filter(|contact| contact.history.normal_force > 0.0);
         Restless {
             block,
+            label: model.labels[block],
             area,
             place,
             speed: libm::hypot(velocity.norm(), spin * (area / std::f64::consts::PI).sqrt()),

@@ -6,14 +6,15 @@ use std::sync::{Arc, OnceLock};
 use crate::contact::{DetectionRule, SideId, VertexEdge};
 use crate::cover::BlockId;
 use crate::geometry::Vector;
+use crate::recut;
 use crate::state::{Drive, Event, EventKind, Ledger, Model, State, Workspace};
 use crate::step::{self, Regime, StepError, StepReport, Wanted};
 
 use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 use super::case::{Case, Invalid, Stage};
+use super::grounds::{self, Ground};
 use super::looks::Looks;
 use super::overlap::{self, Audit, Overlap};
-use super::recut::{self, Ground};
 
 /// Residual of the ledger over its largest term from which a motion has nothing to do with the case.
 const RESIDUAL_MAX: f64 = 0.9;
@@ -63,7 +64,7 @@ impl Simulation {
         integrators: &dyn Integrators,
         tell: &mut dyn FnMut(BuildStage),
     ) -> Result<Self, Invalid> {
-        let (grounds, state) = recut::grounds(&case, integrators, tell)?;
+        let (grounds, state) = grounds::build(&case, integrators, tell)?;
         let mut simulation = Self {
             case,
             built: grounds[0].built.clone(),
@@ -81,7 +82,7 @@ impl Simulation {
     /// The same with other constants of contact, for studies of what they do.
     #[must_use]
     pub fn with_detection(mut self, rule: DetectionRule) -> Self {
-        recut::change(&mut self.grounds, |built| built.model.detection = rule);
+        grounds::change(&mut self.grounds, |built| built.model.detection = rule);
         self.built = self.grounds[self.state.stage as usize].built.clone();
         self.state.found.forget();
         self.looks.forget();

@@ -278,11 +278,6 @@ impl Model {
         ContactSetting { boundary, frames, laws, trace_law, section_share, strength, filter_share, crush_length }
     }
 
-    /// The block with a number that hosts see, if there is one now.
-    pub fn labelled(&self, label: u32) -> Option<BlockId> {
-        self.labels.iter().position(|&own| own == label).map(BlockId::new)
-    }
-
     /// θ of the solver's own springs in a step of `dt` (s): backward Euler, and a dashpot that a shorter step does not
     /// weaken (Eq. 15a).
     pub fn theta_in(&self, dt: f64) -> f64 {

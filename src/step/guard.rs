@@ -56,7 +56,7 @@ pub(super) fn speed_limit(model: &Model) -> f64 {
 /// Fails when a velocity is not finite or beyond the wave speed, or a node is too deep in another block.
 pub fn check(model: &Model, state: &State, workspace: &Workspace, outcome: &StepOutcome) -> Result<(), StepError> {
     let failed = |block: BlockId, position: Point, failure: Failure| {
-        Err(StepError { block: block.number(), position, time: outcome.end, failure })
+        Err(StepError { block: model.labels[block], position, time: outcome.end, failure })
     };
     if outcome.is_singular {
         return failed(BlockId::new(0), model.covers.star_position[0], Failure::Singular);

@@ -50,8 +50,8 @@ keys! {
         pub excavate: PointList => PLACE,
         /// Polygon (m): the blocks whose reference centroid lies inside are removed.
         pub excavate_region: Option<PointList> => PLACE,
-        /// Lines along which the rock is cut at its start: joints, or the borders of what it excavates. They need not be
-        /// drawn before, and carry the stress of the rock until their law gives way.
+        /// Lines along which the rock is cut at its start: joints, or the borders of what it excavates. They need not
+        /// be drawn before, and carry the stress of the rock until their law gives way.
         #[serde(default, rename = "cut", skip_serializing_if = "Vec::is_empty")]
         pub cuts: Vec<StageCut>,
         /// Values of joint laws that change.

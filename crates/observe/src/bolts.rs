@@ -40,7 +40,7 @@ pub fn bolts(simulation: &Simulation) -> Vec<BoltLine> {
         BoltLine {
             ends: [end(0), end(1)],
             reference: segment.points,
-            blocks: segment.blocks.map(|block| block.number()),
+            blocks: segment.blocks.map(|block| model.labels[block]),
             bolt: segment.bolt,
             force: now.force,
             plastic_elongation: now.rest - now.natural,

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use enmm::geometry::{Point, TraceId, Vector, segment};
-use enmm::model::tables::{Boundary, EdgeId, NodeId, VertexEdge};
+use enmm::model::tables::{BlockId, Boundary, EdgeId, NodeId, VertexEdge};
 use enmm::model::{ContactState, Quantity, Simulation};
 
 use crate::bonds::{BondState, bond_states};
@@ -94,7 +94,7 @@ struct Load {
 /// other block.
 struct Forces {
     faces: Vec<Load>,
-    touched: BTreeMap<(NodeId, u32), Touch>,
+    touched: BTreeMap<(NodeId, BlockId), Touch>,
 }
 
 impl Joints {
@@ -239,7 +239,7 @@ impl Joints {
             Some((face, is_first)) => add(&mut forces.faces[face], if is_first { -1.0 } else { 1.0 }),
             None => {
                 let other = boundary.block[boundary.nodes.point[history.node]];
-                let key = (boundary.node_before[history.edge], other.number());
+                let key = (boundary.node_before[history.edge], other);
                 let touch = forces.touched.entry(key).or_default();
                 add(&mut touch.load, -1.0);
                 touch.law = contact.law.number();
@@ -332,7 +332,7 @@ fn seen(simulation: &Simulation, positions: &[Point], piece: &Facing) -> JointPi
     JointPiece {
         ends: own,
         normal,
-        blocks: piece.edges.map(|edge| boundary.block[edge].number()),
+        blocks: piece.edges.map(|edge| model.labels[boundary.block[edge]]),
         law: switch[law].number(),
         opening: apart.dot(&normal),
         slip: apart.perp(&normal).abs(),
@@ -346,15 +346,16 @@ fn seen(simulation: &Simulation, positions: &[Point], piece: &Facing) -> JointPi
 }
 
 /// The stretch between two nodes that another block touches.
-fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, u32), touch: Touch) -> JointPiece {
-    let boundary = &simulation.model().boundary;
+fn touch(simulation: &Simulation, positions: &[Point], (node, other): (NodeId, BlockId), touch: Touch) -> JointPiece {
+    let model = simulation.model();
+    let boundary = &model.boundary;
     let [from, to] = [node, boundary.nodes.next[node]].map(|node| boundary.nodes.point[node]);
     let ends = [positions[from], positions[to]];
     let length = (ends[1] - ends[0]).norm().max(f64::MIN_POSITIVE);
     JointPiece {
         ends,
         normal: outward(ends),
-        blocks: [boundary.block[from].number(), other],
+        blocks: [boundary.block[from], other].map(|block| model.labels[block]),
         law: touch.law,
         opening: 0.0,
         slip: 0.0,

@@ -111,7 +111,7 @@ impl Snapshot {
             if !state.plastic.is_empty() {
                 snapshot.plastic_strain.push(model.plastic_strain_under(state, e, &patches));
             }
-            snapshot.block.push(covers.element_block[e].number());
+            snapshot.block.push(model.labels[covers.element_block[e]]);
             snapshot.rock.push(u32::from(model.element_rock[e]));
         }
         snapshot.boundaries = boundaries(simulation);
@@ -169,7 +169,7 @@ fn boundaries(simulation: &Simulation) -> Vec<Boundary> {
         let area = |points: &Range<usize>| polygon::area(&positions[points.clone()]);
         loops.sort_by(|a, b| area(b).total_cmp(&area(a)));
         Boundary {
-            block: block.number(),
+            block: simulation.model().labels[block],
             fixed: simulation.workspace().mass_matrix.fixed[block],
             displacement: simulation.displacement_of(block),
             loops: polygons(&loops, &positions),

@@ -25,7 +25,7 @@ pub fn wet_edges(simulation: &Simulation) -> Vec<WetEdge> {
     let pressure = |p: Point| weight * (height_at(&surface, p.x) - p.y).max(0.0);
     let wet = |&edge: &EdgeId| {
         let ends = [edge, model.boundary.after(edge)].map(|k| positions[k]);
-        WetEdge { ends, block: model.boundary.block[edge].number(), pressure: ends.map(pressure) }
+        WetEdge { ends, block: model.labels[model.boundary.block[edge]], pressure: ends.map(pressure) }
     };
     let there = |edge: &&EdgeId| !state.removed[model.boundary.block[**edge]];
     let edges = water.edges.iter().filter(there).map(wet);

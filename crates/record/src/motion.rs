@@ -37,7 +37,7 @@ impl From<SlopeFailure> for FailureOfStage {
             blocks: failure.blocks,
             mass: failure.mass,
             displacement,
-            block: block.number(),
+            block,
             place: place.into(),
             text: failure.to_string(),
         }
@@ -90,7 +90,7 @@ impl PermanentMotion {
         Self {
             stage: simulation.stage().name.clone(),
             displacement: farthest.map_or(0.0, |farthest| farthest.displacement),
-            block: farthest.map(|farthest| farthest.block.number()),
+            block: farthest.map(|farthest| farthest.block),
             place: farthest.map(|farthest| farthest.place.into()),
             joints: slips(simulation, joints, began),
             monitors: monitors(simulation, began),

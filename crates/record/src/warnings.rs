@@ -4,7 +4,6 @@ use enmm::model::case::keys::{Plain, rounded};
 use std::io;
 
 use enmm::model::case::{Integrator, StageKind};
-use enmm::model::tables::BlockId;
 use enmm::model::{Event, EventKind, Restless, Simulation};
 use enmm_report::Note;
 
@@ -126,7 +125,7 @@ impl Recorder {
 }
 
 fn overlap_text(simulation: &Simulation, event: &Event) -> String {
-    let block = simulation.model().labelled(event.subject).unwrap_or_default();
+    let block = simulation.block_labelled(event.subject).unwrap_or_default();
     let place = simulation.motion_of(block).centroid;
     format!(
         "{} near ({:.3}, {:.3}) m at t = {} s: results about them are wrong from here on; where their joint is \

@@ -19,8 +19,8 @@ mod stage;
 mod warnings;
 
 use crate::contact::{
-    BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, KeptNodes, LawId, Resistance, Roughness, Sections,
-    Softening, Support,
+    BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
+    Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
 use crate::geometry::ends::EndDistances;
@@ -29,6 +29,7 @@ use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
+use crate::recut::keep_nodes;
 use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, QuietBoundary, State, Water};
 
 use joints::Joints;
@@ -154,8 +155,7 @@ fn model(
     let (rocks, element_rock, averaging) = rock::of_elements(case, &positions)?;
     let (fixities, supports, fixed_supports, quiets) = held(case, &positions, &rocks, &element_rock)?;
     tell(BuildStage::Boundary);
-    let kept = before.map(|before| KeptNodes::new(before, tolerance));
-    let boundary = Boundary::new(&covers, outlines, &DetectionRule::default(), kept.as_ref());
+    let boundary = Boundary::new(&covers, &keep_nodes(outlines, before, tolerance), &DetectionRule::default());
     tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary, &quiets.quiets)?;

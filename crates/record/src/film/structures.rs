@@ -27,7 +27,7 @@ impl Beside {
     /// With ends of bolts that are displaced (m) as a reference position (m) of a block is.
     pub fn moved(simulation: &Simulation, displacement: impl Fn(Point, BlockId) -> Vector) -> Self {
         let lines = bolts(simulation);
-        let block = |line: &BoltLine, k: usize| BlockId::new(line.blocks[k] as usize);
+        let block = |line: &BoltLine, k: usize| simulation.block_labelled(line.blocks[k]).unwrap_or_default();
         let ends = lines.iter().map(|line| [0, 1].map(|k| displacement(line.reference[k], block(line, k))));
         Self::with(simulation, &lines, ends)
     }

@@ -3,7 +3,6 @@
 use crate::contact::{BoltSegment, EdgeId, NodeId, Section, SideId, Support};
 use crate::cover::BlockId;
 use crate::geometry::{Point, segment};
-use crate::model::assemble::Built;
 use crate::state::Model;
 
 use super::parents::Parents;
@@ -31,20 +30,11 @@ pub struct Lineage {
 }
 
 impl Lineage {
-    /// That of a model which has more cuts than one before.
+    /// That of a model which has more cuts than an old one; points within `tolerance` (m) are one.
     ///
     /// # Errors
     /// Why the cuts cannot be made in the middle of a run.
-    pub fn new(before: &Built, after: &Built) -> Result<Self, String> {
-        let crumbs = after.crumbs.iter().filter(|crumb| before.crumbs.iter().all(|old| old.place != crumb.place));
-        if let Some(crumb) = crumbs.min_by(|a, b| a.area.total_cmp(&b.area)) {
-            return Err(format!(
-                "parts off {:.2e} m² of rock at ({:.6}, {:.6}) m, less than mesh.least_block: lead the cut another \
-                 way, or lower that",
-                crumb.area, crumb.place.x, crumb.place.y
-            ));
-        }
-        let (old, new) = (&before.model, &after.model);
+    pub fn new(old: &Model, new: &Model, tolerance: f64) -> Result<Self, String> {
         let parents = Parents::of(&old.covers, &new.covers).map_err(|place| {
             format!(
                 "changes joints beside it at ({:.6}, {:.6}) m, which it may not in the middle of a run: lead it \
@@ -52,7 +42,6 @@ impl Lineage {
                 place.x, place.y
             )
         })?;
-        let tolerance = before.noding.tolerance;
         Ok(Self {
             heirs: parents.heirs(&old.covers, &new.covers),
             supports: supports(old, new, &parents, tolerance)?,

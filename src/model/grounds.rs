@@ -3,20 +3,13 @@
 //! A model is a pure function of the case and of the cuts so far, so that a run, a resumed run and a state that a host
 //! goes back to have the same one. All are built before the run begins.
 
-mod carry;
-mod contacts;
-mod lineage;
-mod parents;
-mod places;
-
 use std::sync::Arc;
 
-use crate::model::assemble::{BuildStage, Built, Cut, Integrators, build};
-use crate::model::case::{Case, Invalid};
+use crate::recut::Lineage;
 use crate::state::State;
 
-pub use carry::carry;
-pub use lineage::Lineage;
+use super::assemble::{BuildStage, Built, Cut, Integrators, build as build_once};
+use super::case::{Case, Invalid};
 
 /// The model of a stage, and how it follows from that of the stage before; without a lineage it is the same.
 #[derive(Debug, Clone)]
@@ -31,26 +24,40 @@ pub struct Ground {
 ///
 /// # Errors
 /// The first key of the case that does not fit.
-pub fn grounds(
+pub fn build(
     case: &Case,
     integrators: &dyn Integrators,
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Vec<Ground>, State), Invalid> {
-    let (built, state) = build(case, (&Cut::up_to(case, 0), None), integrators, tell)?;
+    let (built, state) = build_once(case, (&Cut::up_to(case, 0), None), integrators, tell)?;
     let mut grounds = vec![Ground { built: Arc::new(built), lineage: None }];
     for (k, stage) in case.stages.iter().enumerate().skip(1) {
         let before = grounds[k - 1].built.clone();
         grounds.push(if stage.cuts.is_empty() {
             Ground { built: before, lineage: None }
         } else {
-            let (mut built, _) = build(case, (&Cut::up_to(case, k), Some(&before.model.boundary)), integrators, tell)?;
+            let (mut built, _) =
+                build_once(case, (&Cut::up_to(case, k), Some(&before.model.boundary)), integrators, tell)?;
             let refused = |message| Invalid { key: format!("stage[{k}].cut"), message };
-            let lineage = Lineage::new(&before, &built).map_err(refused)?;
+            let lineage = lineage(&before, &built).map_err(refused)?;
             built.model.labels = lineage.labels(&before.model, &built.model);
             Ground { built: Arc::new(built), lineage: Some(Arc::new(lineage)) }
         });
     }
     Ok((grounds, state))
+}
+
+/// How a model with more cuts follows from one before, or why the cuts cannot be made in the middle of a run.
+fn lineage(before: &Built, after: &Built) -> Result<Lineage, String> {
+    let crumbs = after.crumbs.iter().filter(|crumb| before.crumbs.iter().all(|old| old.place != crumb.place));
+    if let Some(crumb) = crumbs.min_by(|a, b| a.area.total_cmp(&b.area)) {
+        return Err(format!(
+            "parts off {:.2e} m² of rock at ({:.6}, {:.6}) m, less than mesh.least_block: lead the cut another way, or \
+             lower that",
+            crumb.area, crumb.place.x, crumb.place.y
+        ));
+    }
+    Lineage::new(&before.model, &after.model, before.noding.tolerance)
 }
 
 /// Changes the models of all stages alike.
