@@ -195,7 +195,7 @@ fn the_step_in_which_the_slope_fails_says_how() {
     let told: Vec<usize> = (0..infos.len()).filter(|&k| infos[k].failure.is_some()).collect();
     assert_eq!(told, [8], "it passes 0.6 m at 0.8136 s");
     let failure = infos[8].failure.expect("told");
-    assert_eq!((failure.mechanism, failure.blocks, failure.farthest.block.number()), (Mechanism::Slides, 1, 1));
+    assert_eq!((failure.mechanism, failure.blocks, failure.farthest.block), (Mechanism::Slides, 1, 1));
     let way = 0.5 * 1.812813 * 0.9f64.powi(2);
     assert!((failure.farthest.displacement / way - 1.0).abs() < 5e-3, "{failure}");
     assert!(failure.to_string().starts_with("by sliding: 1 block, largest displacement 0.73"), "{failure}");

@@ -91,14 +91,27 @@ fn carry_bolts(lineage: &Lineage, (old, was): (&Model, &State), new: &Model, sta
         .collect();
 }
 
-/// Angular momentum of a block about the origin (kg·m²/s per metre), its centroid, and its spin (rad/s).
-fn angular(model: &Model, state: &State, block: BlockId) -> (f64, Vector) {
-    let masses = &model.mass_matrix;
-    let (centre, velocity, spin, _) = step::block_motion(model, state, masses, block);
-    (masses.total[block] * centre.perp(&velocity) + masses.polar[block] * spin, centre)
+/// Centroid (m), its velocity (m/s), spin (rad/s) and kinetic energy (J/m) of a block.
+fn motion(model: &Model, state: &State, block: BlockId) -> (Vector, Vector, f64, f64) {
+    step::block_motion(model, state, &model.mass_matrix, block)
 }
 
-/// Gives the parts of each free block that has come apart one spin by which they have its angular momentum.
+/// Angular momentum (kg·m²/s per metre) of blocks about the origin.
+fn angular(model: &Model, state: &State, blocks: &[BlockId]) -> f64 {
+    let of = |&block: &BlockId| {
+        let (centre, velocity, spin, _) = motion(model, state, block);
+        model.mass_matrix.total[block] * centre.perp(&velocity) + model.mass_matrix.polar[block] * spin
+    };
+    blocks.iter().map(of).sum()
+}
+
+/// Kinetic energy (J/m) of blocks.
+fn kinetic(model: &Model, state: &State, blocks: &[BlockId]) -> f64 {
+    blocks.iter().map(|&block| motion(model, state, block).3).sum()
+}
+
+/// Gives the parts of each free block that has come apart one spin by which they have its angular momentum, and takes
+/// what they would have more of its kinetic energy.
 fn keep_spin(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatrix, new: &Model, state: &mut State) {
     let mut parts = vec![Vec::new(); old.covers.block_count()];
     for (block, &parent) in new.covers.blocks().zip(&lineage.parents.blocks) {
@@ -108,27 +121,44 @@ fn keep_spin(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatri
         if parts.len() < 2 || !masses.is_free(parent) {
             continue;
         }
-        let now: Vec<_> = parts.iter().map(|&block| angular(new, state, block)).collect();
-        for (&block, (_, centre)) in parts.iter().zip(&now) {
-            turn(new, state, block, *centre, 1.0);
-        }
-        let of_unit: f64 = parts.iter().zip(&now).map(|(&block, now)| angular(new, state, block).0 - now.0).sum();
-        let missing = angular(old, was, parent).0 - now.iter().map(|now| now.0).sum::<f64>();
-        for (&block, (_, centre)) in parts.iter().zip(&now) {
-            let covers = CoverId::range(new.covers.covers_of(block));
-            let whole = covers.map(|i| was.velocity[lineage.parents.covers[i]]);
-            let range = new.covers.covers_of(block);
-            let whole: Vec<Vector> = whole.collect();
-            state.velocity[range].copy_from_slice(&whole);
-            turn(new, state, block, *centre, missing / of_unit);
+        let without = angular(new, state, parts);
+        turn(new, state, parts, 1.0);
+        let of_unit = angular(new, state, parts) - without;
+        turn(new, state, parts, (angular(old, was, &[parent]) - without) / of_unit - 1.0);
+        calm(new, state, parts, kinetic(old, was, &[parent]));
+    }
+}
+
+/// Adds a spin (rad/s) to the velocities of blocks, of each about its own centroid.
+fn turn(model: &Model, state: &mut State, blocks: &[BlockId], spin: f64) {
+    for &block in blocks {
+        let centre = motion(model, state, block).0;
+        for i in CoverId::range(model.covers.covers_of(block)) {
+            let arm = model.covers.star_position[i] + state.displacement[i] - centre;
+            state.velocity[i] += Vector::new(-arm.y, arm.x) * spin;
         }
     }
 }
 
-/// Adds a spin (rad/s) about a centre to the velocities of a block.
-fn turn(model: &Model, state: &mut State, block: BlockId, centre: Vector, spin: f64) {
-    for i in CoverId::range(model.covers.covers_of(block)) {
-        let arm = model.covers.star_position[i] + state.displacement[i] - centre;
-        state.velocity[i] += Vector::new(-arm.y, arm.x) * spin;
+/// Slows the motion of blocks within themselves so that they have no more kinetic energy than `most` (J/m), and keeps
+/// their momentum and angular momentum.
+fn calm(model: &Model, state: &mut State, blocks: &[BlockId], most: f64) {
+    let all = kinetic(model, state, blocks);
+    if all <= most {
+        return;
+    }
+    let moved = state.velocity.clone();
+    for &block in blocks {
+        let (_, velocity, spin, _) = motion(model, state, block);
+        state.velocity[model.covers.covers_of(block)].fill(velocity);
+        turn(model, state, &[block], 1.0);
+        let of_unit = motion(model, state, block).2;
+        turn(model, state, &[block], spin / of_unit - 1.0);
+    }
+    let within = all - kinetic(model, state, blocks);
+    let share = (1.0 - (all - most) / within).max(0.0).sqrt();
+    for i in blocks.iter().flat_map(|&block| CoverId::range(model.covers.covers_of(block))) {
+        let within = (moved[i] - state.velocity[i]) * share;
+        state.velocity[i] += within;
     }
 }

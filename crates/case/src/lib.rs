@@ -227,6 +227,10 @@ impl Case {
 
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
     pub fn is_whole(&self) -> bool {
-        self.joints.is_empty() && self.joint_sets.is_empty() && self.bridges.is_empty() && self.bolts.is_empty()
+        self.joints.is_empty()
+            && self.joint_sets.is_empty()
+            && self.bridges.is_empty()
+            && self.bolts.is_empty()
+            && self.stages.iter().all(|stage| stage.cuts.is_empty())
     }
 }
