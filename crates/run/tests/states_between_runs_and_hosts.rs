@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use enmm::cosimulation::Cosimulation;
-use enmm::model::case::Pictures;
+use enmm::model::case::{Pictures, StageCut};
 use enmm_io::LoadedCase;
 use enmm_run::{Observer, RunOptions, RunProgress, RunStatus, run};
 use tempfile::{TempDir, tempdir};
@@ -102,4 +102,27 @@ fn a_run_goes_on_from_a_host_with_the_bits_of_one_that_was_never_stopped() {
         let names: Vec<&str> = summary.stages.iter().map(|stage| stage.name.as_str()).collect();
         assert_eq!(names, ["settle", "slide"]);
     }
+}
+
+/// A stage cuts the block along its middle.
+#[test]
+fn a_run_goes_on_from_a_state_after_a_cut_with_the_bits_of_one_that_was_never_stopped() {
+    let mut case = example("block_on_incline.toml");
+    case.stages[1].duration = 0.1;
+    case.stages[1].cuts = vec![StageCut { points: vec![[0.163, 0.483], [1.203, -0.117]], law: "joint".to_owned() }];
+    case.output.pictures = Pictures::Usual(false);
+    let loaded = LoadedCase::of(case, "cut.toml").expect("a case");
+    let (whole, part) = (tempdir().expect("a folder"), tempdir().expect("a folder"));
+    let expected = run(&loaded, &options(&whole), &mut ()).expect("a run");
+    let checkpoint = part.path().join("checkpoint.enmm");
+    let first = expected.stages[0].steps;
+    fs::write(&checkpoint, stopped(&loaded, 2, first + 37)).expect("written");
+    let resumed = RunOptions { resume: Some(checkpoint), ..options(&part) };
+    let summary = run(&loaded, &resumed, &mut ()).expect("a run that goes on");
+    let blocks = file(part.path(), "blocks.csv");
+    assert_eq!(blocks, file(whole.path(), "blocks.csv"));
+    assert_eq!((summary.time, summary.steps, summary.energy), (expected.time, expected.steps, expected.energy));
+    let labels: Vec<&[u8]> =
+        blocks.split(|&byte| byte == b'\n').filter_map(|line| line.split(|&b| b == b',').next()).collect();
+    assert_eq!(labels, [&b"id"[..], b"0", b"1", b"2", b""]);
 }

@@ -197,6 +197,9 @@ fn a_motion_of_the_base_is_left_out_with_a_warning() {
     assert!(shaken.warnings.iter().any(|warning| warning.contains("base motion is left out")), "{:?}", shaken.warnings);
 }
 
+/// A static stage that cuts the rock.
+const CUT: &str = "kind = \"static\"\ncut = [{ points = [[0, -5], [1, -5]], law = \"joint\" }]";
+
 #[test]
 fn what_cannot_be_treated_is_refused_by_its_key() {
     let plain = jointed(0.9, 1.0, "");
@@ -212,6 +215,7 @@ fn what_cannot_be_treated_is_refused_by_its_key() {
             "load[0].table",
         ),
         (plain.replace("kind = \"static\"", "kind = \"dynamic\""), "stage[0].kind"),
+        (plain.replace("kind = \"static\"", CUT), "stage[0].cut[0]"),
     ];
     for (text, key) in refusals {
         assert_refused(bound(&case(&text)), key);
