@@ -218,7 +218,7 @@ impl Case {
         let cut = self.stages.iter().position(|stage| !stage.cuts.is_empty());
         cut.map_or(Ok(()), |k| {
             let message = format!(
-                "is for `enmm run`, and {who} cannot follow blocks that a stage parts; draw the line as a joint from \
+                "is for `enmm run`, and {who} cannot follow blocks that a stage parts: draw the line as a joint from \
                  the start, with a law that holds until a stage switches it, or remove it"
             );
             Err(Invalid { key: format!("stage[{k}].cut[0]"), message })
