@@ -4,6 +4,7 @@ import ctypes
 import itertools
 import shutil
 import struct
+import subprocess
 import zipfile
 from contextlib import contextmanager
 from ctypes import (
@@ -36,6 +37,14 @@ C_TYPES = {
     2: {"Real": c_double, "Integer": c_int, "Boolean": c_int},
     3: {"Float64": c_double, "Int32": c_int32, "Boolean": c_bool},
 }
+
+
+def functions_of(fmu) -> list[str]:
+    """Functions of the version of an FMU that its library exports, without their `fmi2` or `fmi3`."""
+    output = subprocess.run(["nm", "-D", "--defined-only", str(fmu.library)], capture_output=True, text=True, check=True)
+    names, prefix = [line.split()[-1] for line in output.stdout.splitlines()], f"fmi{fmu.version}"
+    return [name.removeprefix(prefix) for name in names if name.startswith(prefix)]
+
 
 LOGGER_2 = ctypes.CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p, c_char_p)
 LOGGER_3 = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)

@@ -11,17 +11,12 @@ from pathlib import Path
 
 import pytest
 import fmu_support
-from fmu_support import C_TYPES, DISCARD, ERROR, FATAL, OK, TYPES, WARNING, Instance, fmpy, size
+from fmu_support import C_TYPES, DISCARD, ERROR, FATAL, OK, TYPES, WARNING, Instance, fmpy, functions_of, size
 
 H = 0.01
 NAN, INF = float("nan"), float("inf")
 # Twenty arguments: more than any function has.
 NOTHING = [c_void_p(None)] * 20
-
-
-def symbols(library) -> list[str]:
-    output = subprocess.run(["nm", "-D", "--defined-only", str(library)], capture_output=True, text=True, check=True)
-    return [line.split()[-1] for line in output.stdout.splitlines()]
 
 
 def recovers(instance, state, expected):
@@ -191,8 +186,7 @@ def test_every_function_stands_missing_arguments(running):
     """NULL for every argument; then every count says that there is something behind the NULL."""
     instance, state, expected = running
     prefix = f"fmi{instance.version}"
-    names = [name.removeprefix(prefix) for name in symbols(instance.fmu.library)]
-    names = [name for name in names if not name.startswith(LIFE)]
+    names = [name for name in functions_of(instance.fmu) if not name.startswith(LIFE)]
     assert len(names) > 35
     for name in names:
         before = len(instance.log)
@@ -219,7 +213,7 @@ def test_every_function_stands_a_wrong_instance(fmu, opened, pointer):
     if pointer == right:
         pointer += 7
     prefix = f"fmi{fmu.version}"
-    for name in (name.removeprefix(prefix) for name in symbols(fmu.library)):
+    for name in functions_of(fmu):
         if not name.startswith(LIFE):
             assert instance.call(name, *NOTHING) == ERROR, name
     free = getattr(instance.library, f"{prefix}FreeInstance")
@@ -532,8 +526,7 @@ print("sound")
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_calls_never_crash(fmu, seed):
-    prefix = f"fmi{fmu.version}"
-    names = [name.removeprefix(prefix) for name in symbols(fmu.library)]
+    names = functions_of(fmu)
     # Texts and sizes behind valid pointers would be the importer's own lie.
     unfit = (
         *LIFE,

@@ -213,6 +213,17 @@ fn cuts_that_cannot_be_made_are_refused() {
     assert!(host.contains("stage[1].cut[0]") && host.contains("a model that a host drives"), "{host}");
 }
 
+/// The build warns of later cuts before the run, as of all else.
+#[test]
+fn warnings_about_cuts_of_later_stages_stand_at_the_start() {
+    let cut = "kind = \"static\"\nduration = 0.1\ncut = [{ points = [[7.6, 9], [8.4, 2]], law = \"weak\" }]\n";
+    let law = "[joint_law.weak]\nfriction_deg = 30\ntension = 1e6\ntension_energy = 1e-3\n";
+    let slope = simulation(&(held_slope(cut) + law));
+    let warnings = &slope.built().warnings;
+    let is_told = |text: &String| text.contains("on: joint_law.weak.tension_energy: snap-back");
+    assert_eq!(warnings.iter().filter(|text| is_told(text)).count(), 1, "{warnings:?}");
+}
+
 /// A run with a cut has the same bits on other threads, when it goes back to a state before the cut, and when it takes
 /// up a state after the cut in another process.
 #[test]

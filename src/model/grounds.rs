@@ -31,6 +31,7 @@ pub fn build(
 ) -> Result<(Vec<Ground>, State), Invalid> {
     let (built, state) = build_once(case, (&Cut::up_to(case, 0), None), integrators, tell)?;
     let mut grounds = vec![Ground { built: Arc::new(built), lineage: None }];
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     for (k, stage) in case.stages.iter().enumerate().skip(1) {
         let before = grounds[k - 1].built.clone();
         grounds.push(if stage.cuts.is_empty() {
@@ -41,10 +42,25 @@ pub fn build(
             let refused = |message| Invalid { key: format!("stage[{k}].cut"), message };
             let lineage = lineage(&before, &built).map_err(refused)?;
             built.model.labels = lineage.labels(&before.model, &built.model);
+            notes.extend(new_in(&stage.name, &built.notes, &before.notes));
+            warnings.extend(new_in(&stage.name, &built.warnings, &before.warnings));
             Ground { built: Arc::new(built), lineage: Some(Arc::new(lineage)) }
         });
     }
+    if !notes.is_empty() || !warnings.is_empty() {
+        // Those of the first are shown; the others have none left to take.
+        change(&mut grounds, |built| {
+            built.notes.append(&mut notes);
+            built.warnings.append(&mut warnings);
+        });
+    }
     Ok((grounds, state))
+}
+
+/// Notes or warnings of the model of a stage that the model before has not.
+fn new_in<'a>(stage: &'a str, texts: &'a [String], before: &'a [String]) -> impl Iterator<Item = String> + 'a {
+    let new = texts.iter().filter(|text| !before.contains(text));
+    new.map(move |text| format!("from stage {stage:?} on: {text}"))
 }
 
 /// How a model with more cuts follows from one before, or why the cuts cannot be made in the middle of a run.
@@ -61,7 +77,7 @@ fn lineage(before: &Built, after: &Built) -> Result<Lineage, String> {
 }
 
 /// Changes the models of all stages alike.
-pub fn change(grounds: &mut [Ground], change: impl Fn(&mut Built)) {
+pub fn change(grounds: &mut [Ground], mut change: impl FnMut(&mut Built)) {
     for stage in 0..grounds.len() {
         if stage > 0 && grounds[stage].lineage.is_none() {
             grounds[stage].built = grounds[stage - 1].built.clone();
