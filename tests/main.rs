@@ -7,6 +7,7 @@ mod base_motion;
 mod bolt_law;
 mod bolts;
 mod bond_softening;
+mod breaking;
 mod bridge_sections;
 mod checkpoint;
 mod columns;

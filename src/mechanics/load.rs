@@ -6,6 +6,38 @@ use crate::geometry::{Point, Vector};
 use super::MassMatrix;
 use super::pressure::{inward, part};
 
+/// Takes forces of loads on the rock.
+pub trait Forces {
+    /// Takes a force (N/m) at a material point.
+    fn at_point(&mut self, covers: &[CoverId; 3], weights: &Weights, force: Vector);
+
+    /// Takes an even load (N/m in all) between two points of an element, given by the weights there.
+    fn on_piece(&mut self, covers: &[CoverId; 3], ends: &[Weights; 2], force: Vector) {
+        self.at_point(covers, &[0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k])), force);
+    }
+
+    /// Takes the forces (N/m) at both ends of an edge that stand for a load on it.
+    fn on_edge(&mut self, covers: &[[CoverId; 3]; 2], weights: &[Weights; 2], forces: [Vector; 2]) {
+        (0..2).for_each(|e| self.at_point(&covers[e], &weights[e], forces[e]));
+    }
+
+    /// Takes a force (N/m) on a cover that is part of one on all rock of its block, by its mass.
+    fn on_rock(&mut self, cover: CoverId, force: Vector);
+}
+
+/// Forces (N/m) by cover.
+impl Forces for [Vector] {
+    fn at_point(&mut self, covers: &[CoverId; 3], weights: &Weights, force: Vector) {
+        for (cover, w) in covers.iter().zip(weights) {
+            self[*cover] += force * *w;
+        }
+    }
+
+    fn on_rock(&mut self, cover: CoverId, force: Vector) {
+        self[cover] += force;
+    }
+}
+
 /// Factor over time: linear between rows, constant beyond both ends; no rows mean 1.
 #[doc(alias = "load curve")]
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -43,6 +75,8 @@ pub struct LoadedFace {
 pub enum LoadAction {
     /// Force (N/m) at material points: covers, weights, force.
     Forces(Vec<([CoverId; 3], Weights, Vector)>),
+    /// Force (N/m) on pieces of boundary, given by the covers of their element and the weights of both ends.
+    Tractions(Vec<([CoverId; 3], [Weights; 2], Vector)>),
     /// Pressure (Pa) on pieces of boundary, given by the covers of their element and the weights of both ends.
     Pressure(Vec<([CoverId; 3], [Weights; 2])>, f64),
     /// Fluid pressure on faces of joints.
@@ -71,7 +105,7 @@ impl Load {
         }
     }
 
-    /// Adds the forces of this load at time `t` (s) to `force` (N/m per cover).
+    /// Gives the forces of this load at time `t` (s).
     ///
     /// `position` gives the current position of a cover's star, `block` the covers of a block.
     pub fn push(
@@ -80,27 +114,31 @@ impl Load {
         position: impl Fn(CoverId) -> Point,
         block: impl Fn(BlockId) -> std::ops::Range<usize>,
         mass_matrix: &MassMatrix,
-        force: &mut [Vector],
+        force: &mut (impl Forces + ?Sized),
     ) {
         let factor = self.table.at(t);
         match &self.action {
             LoadAction::Forces(list) => {
                 for (covers, weights, f) in list {
-                    spread(covers, weights, f * factor, force);
+                    force.at_point(covers, weights, f * factor);
+                }
+            }
+            LoadAction::Tractions(list) => {
+                for (covers, ends, f) in list {
+                    force.on_piece(covers, ends, f * factor);
                 }
             }
             LoadAction::Pressure(list, pressure) => {
                 for (covers, ends) in list {
                     let [a, b] = ends.map(|w| (0..3).map(|k| position(covers[k]) * w[k]).sum::<Point>());
-                    let middle = [0, 1, 2].map(|k| 0.5 * (ends[0][k] + ends[1][k]));
-                    spread(covers, &middle, inward(a, b) * (pressure * factor), force);
+                    force.on_piece(covers, ends, inward(a, b) * (pressure * factor));
                 }
             }
             LoadAction::Faces(faces) => {
                 for LoadedFace { covers, weights, span, pressure } in faces {
                     let [a, b] = [0, 1].map(|e| (0..3).map(|k| position(covers[e][k]) * weights[e][k]).sum::<Point>());
                     let forces = part(inward(a, b), *span, pressure.map(|p| p * factor));
-                    (0..2).for_each(|e| spread(&covers[e], &weights[e], forces[e], force));
+                    force.on_edge(covers, weights, forces);
                 }
             }
             LoadAction::Body(_) => {}
@@ -111,13 +149,6 @@ impl Load {
     }
 }
 
-/// Spreads a force (N/m) at a material point over its covers.
-pub fn spread(covers: &[CoverId; 3], weights: &Weights, f: Vector, force: &mut [Vector]) {
-    for (cover, w) in covers.iter().zip(weights) {
-        force[*cover] += f * *w;
-    }
-}
-
 /// Spreads a force and a moment over a block so that it moves as a rigid body: μ·f/M and m·(x − x_D)^⊥·τ/J_D.
 pub fn push_block(
     covers: std::ops::Range<usize>,
@@ -125,7 +156,7 @@ pub fn push_block(
     mass_matrix: &MassMatrix,
     f: Vector,
     moment: f64,
-    force: &mut [Vector],
+    force: &mut (impl Forces + ?Sized),
 ) {
     let total: f64 = mass_matrix.row_sum[covers.clone()].iter().sum();
     let covers = CoverId::range(covers);
@@ -134,7 +165,7 @@ pub fn push_block(
     for i in covers {
         let arm = position(i) - centre;
         let spin = Vector::new(-arm.y, arm.x) * (mass_matrix.mass[i] * moment / polar);
-        force[i] += f * (mass_matrix.row_sum[i] / total) + spin;
+        force.on_rock(i, f * (mass_matrix.row_sum[i] / total) + spin);
     }
 }
 
@@ -157,7 +188,7 @@ mod tests {
         let mut force = [Vector::zeros(); 3];
         let [mass, row_sum] = [[2.0; 3], [1.0, 2.0, 3.0]].map(std::sync::Arc::from);
         let mass_matrix = MassMatrix { mass, row_sum, ..MassMatrix::default() };
-        load.push(0.0, |i| positions[i], |_| 0..3, &mass_matrix, &mut force);
+        load.push(0.0, |i| positions[i], |_| 0..3, &mass_matrix, &mut force[..]);
         let torque: f64 = positions.iter().zip(&force).map(|(x, f)| x.perp(f)).sum();
         assert!(force.iter().sum::<Vector>().norm() < 1e-15 && (torque - 5.0).abs() < 1e-14);
     }

@@ -12,6 +12,7 @@ mod mass;
 mod motion;
 pub mod pressure;
 mod record;
+mod section;
 mod turn;
 mod yield_lanes;
 
@@ -24,12 +25,13 @@ pub use averaging::{Averages, Averaging, RUN, fill_runs};
 pub use chunk::{Chunk, Chunks};
 pub use column::{Column, ColumnDrive, ColumnPosition, ColumnState, Foot};
 pub use elastic::ElasticElements;
-pub use load::{Load, LoadAction, LoadedFace, TimeTable, push_block, spread};
+pub use load::{Forces, Load, LoadAction, LoadedFace, TimeTable, push_block};
 pub use mass::MassMatrix;
 pub use motion::{
     BlockCovers, BlockMotion, BlockStart, Damping, KickStep, damp, kinetic_energy, motion_with_energy, rigid_motion,
     rigid_velocity, turning,
 };
 pub use record::Record;
+pub use section::{Resultants, RockStrength, SectionCut, SectionFailure, bending_strength, crack_time};
 pub use turn::Turn;
 pub use yield_lanes::{ElementRow, PatchPlaces, PlasticPlaces};

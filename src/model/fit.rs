@@ -3,17 +3,21 @@
 
 use enmm_case::keys::Plain;
 use std::fmt::Display;
+use std::sync::Arc;
 
 use crate::contact::{
     BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, JointLaw, Meeting, NeighbourList, Release,
     Roughness, Unloaded,
 };
-use crate::geometry::Vector;
+use crate::geometry::{Point, Vector};
+use crate::mechanics::Resultants;
 use crate::state::{
-    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
+    Counters, Course, Cut, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
+    WorstSection,
 };
 
 use super::Simulation;
+use super::assemble::Built;
 use super::case::StageKind;
 use super::case::limits::FACTOR_MAX;
 
@@ -146,6 +150,8 @@ impl Simulation {
             neighbours,
             support_force: _,
             support_rest: _,
+            worst_sections,
+            cuts,
             fix_active: _,
             removed: _,
             laws,
@@ -159,7 +165,9 @@ impl Simulation {
             counters,
         } = state;
         self.check_clock(state)?;
-        let model = &self.grounds[state.stage as usize].built.model;
+        let built = self.check_cuts(state.stage, cuts)?;
+        let model = &built.model;
+        check_worst(model, worst_sections)?;
         self.check_motion(model, state)?;
         check_contacts(model, contacts)?;
         let is_soft = laws.iter().any(|law| law.softening.is_some());
@@ -177,6 +185,32 @@ impl Simulation {
         check_events(model, events)?;
         check_ledger(ledger)?;
         check_counters(counters)
+    }
+
+    /// Checks sections that have broken, and builds the model with them.
+    fn check_cuts(&self, stage: u32, cuts: &[Cut]) -> Result<Arc<Built>, Unfit> {
+        if let Some(breaking) = &self.model().breaking {
+            at_most("the number of cuts", cuts.len() as u64, breaking.cuts_max.min(breaking.parts_max) as u64)?;
+        } else {
+            length("cuts", cuts.len(), 0)?;
+        }
+        for (k, cut) in cuts.iter().enumerate() {
+            index(format_args!("cuts[{k}].rock"), cut.rock.into(), self.case().rocks.len())?;
+            if self.case().rocks.values().nth(cut.rock.into()).is_none_or(|rock| rock.fracture.is_none()) {
+                unfit(format!("cuts[{k}].rock"), cut.rock, "a rock that breaks".to_owned())?;
+            }
+            at_most(format_args!("cuts[{k}].stage"), cut.stage.into(), stage.into())?;
+            at_most(format_args!("cuts[{k}].step"), cut.step, COUNT)?;
+            between(format_args!("cuts[{k}].time"), cut.time, 0.0, TIME)?;
+            check_section(&format!("cuts[{k}]"), cut.share, (cut.ends, &cut.carried))?;
+        }
+        in_order("cuts", "by step", cuts.is_sorted_by_key(|cut| (cut.stage, cut.step)))?;
+        let ground = self.ground(stage as usize, cuts);
+        ground.map(|ground| ground.built).map_err(|error| Unfit {
+            what: "the model with its cuts".to_owned(),
+            value: error.to_string(),
+            limit: "one that can be built".to_owned(),
+        })
     }
 
     fn check_clock(&self, state: &State) -> Fit {
@@ -254,6 +288,22 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+fn check_worst(model: &Model, sections: &[WorstSection]) -> Fit {
+    length("worst_sections", sections.len(), model.breaking.as_ref().map_or(0, |_| model.covers.block_count()))?;
+    let check = |(k, of): (usize, &WorstSection)| {
+        check_section(&format!("worst_sections[{k}]"), of.share, (of.ends, &of.carries))
+    };
+    sections.iter().enumerate().try_for_each(check)
+}
+
+fn check_section(what: &str, share: f64, (ends, carries): ([Point; 2], &Resultants)) -> Fit {
+    number(format_args!("{what}.share"), share, FORCE)?;
+    ends.into_iter().try_for_each(|end| vector(format_args!("{what}.ends"), end, LENGTH))?;
+    let Resultants { normal, shear, moment } = *carries;
+    let of = [("normal", normal), ("shear", shear), ("moment", moment)];
+    of.into_iter().try_for_each(|(field, value)| number(format_args!("{what}.{field}"), value, FORCE))
 }
 
 fn check_drive(model: &Model, drive: &Drive) -> Fit {
@@ -398,13 +448,13 @@ fn check_events(model: &Model, events: &Events) -> Fit {
     for (k, Event { kind, subject, time, other, depth }) in list.iter().enumerate() {
         number(format_args!("events.list[{k}].time"), *time, TIME)?;
         between(format_args!("events.list[{k}].depth"), *depth, 0.0, LENGTH)?;
-        if *kind == EventKind::Overlapped {
+        if matches!(kind, EventKind::Overlapped | EventKind::Cut) {
             index(format_args!("events.list[{k}].other"), *other, blocks)?;
         }
         match kind {
             EventKind::Slipped if *subject == u32::MAX => Ok(()),
             EventKind::Slipped | EventKind::Broken => index(format_args!("events.list[{k}].subject"), *subject, traces),
-            EventKind::Detached | EventKind::Failed | EventKind::Overlapped => {
+            EventKind::Detached | EventKind::Failed | EventKind::Overlapped | EventKind::Cut => {
                 index(format_args!("events.list[{k}].subject"), *subject, blocks)
             }
         }?;

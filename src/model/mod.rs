@@ -1,6 +1,7 @@
 //! How what the user wrote ([`Case`]) is built, and the façade that callers hold ([`Simulation`]).
 
 pub mod assemble;
+mod breaking;
 mod failure;
 pub mod fit;
 mod grounds;

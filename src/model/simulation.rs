@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::contact::{DetectionRule, SideId, VertexEdge};
 use crate::cover::BlockId;
+use crate::fracture::Outlines;
 use crate::geometry::Vector;
 use crate::recut;
 use crate::state::{Drive, Event, EventKind, Ledger, Model, State, Workspace};
@@ -12,7 +13,7 @@ use crate::step::{self, Regime, StepError, StepReport, Wanted};
 
 use super::assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 use super::case::{Case, Invalid, Stage};
-use super::grounds::{self, Ground};
+use super::grounds::{self, Broken, Ground};
 use super::looks::Looks;
 use super::overlap::{self, Audit, Overlap};
 
@@ -32,6 +33,10 @@ pub struct Simulation {
     pub(super) state: State,
     pub(super) workspace: Workspace,
     pub(super) regime: Regime,
+    /// Models of rock that has broken.
+    pub(super) broken: Broken,
+    /// Blocks of the model that can break, once sections of them are looked for.
+    pub(super) outlines: OnceLock<Outlines>,
     /// Looks of callers since the model last changed.
     pub(super) looks: Looks,
     /// The blocks as the audit of overlaps cuts them, once it has had to compare two.
@@ -72,6 +77,8 @@ impl Simulation {
             state,
             workspace: Workspace::default(),
             regime: Regime::Dynamic { damping: 0.0 },
+            broken: Broken::default(),
+            outlines: OnceLock::new(),
             looks: Looks::default(),
             audit: OnceLock::new(),
         };
@@ -187,29 +194,40 @@ impl Simulation {
     /// Makes model, regime and buffers those of the state.
     fn take_up(&mut self) {
         self.looks.forget();
-        self.stand_on(self.grounds[self.state.stage as usize].built.clone());
+        self.stand_on(self.built_for(&self.state));
         self.regime = self.regime_of(self.state.stage as usize);
         step::prepare(&self.built.model, &self.state, &mut self.workspace);
     }
 
+    /// The model of a state that a simulation of this case has been in, or that [`Simulation::check`] has passed.
+    fn built_for(&self, state: &State) -> Arc<Built> {
+        let stage = state.stage as usize;
+        self.ground(stage, &state.cuts).map_or_else(|_| self.grounds[stage].built.clone(), |ground| ground.built)
+    }
+
     /// Makes a model that of the next step.
-    fn stand_on(&mut self, built: Arc<Built>) {
+    pub(super) fn stand_on(&mut self, built: Arc<Built>) {
         if !Arc::ptr_eq(&built, &self.built) {
             let Workspace { serial, seconds, .. } = self.workspace;
             self.workspace = Workspace { serial, seconds, ..Workspace::default() };
             self.audit = OnceLock::new();
+            self.outlines = OnceLock::new();
             self.built = built;
         }
     }
 
     /// Cuts the rock as a stage that begins does.
-    pub(super) fn cut(&mut self, stage: usize) {
-        let Ground { built, lineage } = self.grounds[stage].clone();
+    ///
+    /// # Errors
+    /// A cut that cannot be made through rock that has broken.
+    pub(super) fn cut(&mut self, stage: usize) -> Result<(), Invalid> {
+        let Ground { built, lineage } = self.ground(stage, &self.state.cuts)?;
         if let Some(lineage) = lineage {
             let before = (&self.built.model, &self.state);
             self.state = recut::carry(&lineage, before, &self.workspace.mass_matrix, &built.model);
             self.stand_on(built);
         }
+        Ok(())
     }
 
     /// The same with the cuts of all later stages, which part blocks and change nothing else, to be looked at: so that
@@ -222,7 +240,9 @@ impl Simulation {
         let mut ahead = self.clone();
         ahead.looks.forget();
         for stage in later {
-            ahead.cut(stage);
+            if ahead.cut(stage).is_err() {
+                break;
+            }
             step::prepare(&ahead.built.model, &ahead.state, &mut ahead.workspace);
         }
         Cow::Owned(ahead)
@@ -243,15 +263,19 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn advance_for(&mut self, wanted: Wanted) -> Result<StepReport, StepError> {
         self.looks.forget();
+        let watched = self.watch(wanted);
         let is_due = wanted == Wanted::Report && self.rest_due();
         let is_small = self.workspace.selection.kept_gaps.is_some();
         let audits = self.state().step.is_multiple_of(overlap::EVERY) && !is_small;
-        let made = step::advance(&self.built.model, self.regime, &mut self.state, &mut self.workspace, wanted)?;
+        let mut made = step::advance(&self.built.model, self.regime, &mut self.state, &mut self.workspace, wanted)?;
         if is_due {
             self.state.most_rest = self.most_rest_with(&made);
         }
         if audits {
             self.note_overlaps();
+        }
+        if let Some(watched) = watched {
+            self.break_rock(&watched, &mut made)?;
         }
         Ok(made)
     }

@@ -66,7 +66,7 @@ impl Simulation {
     pub(super) fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         self.looks.forget();
         let before = self.energies();
-        self.cut(stage);
+        self.cut(stage)?;
         self.excavate(stage)?;
         change_laws(&self.case, stage, &mut self.state.laws, &mut self.state.law_switch);
         self.change_fixities(stage);

@@ -1,10 +1,10 @@
 //! The state of a model as it goes on after a cut.
 
-use crate::contact::BoltState;
+use crate::contact::{BoltState, Release};
 use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
-use crate::state::{Drive, Events, Inputs, Model, State};
+use crate::state::{Drive, Events, Inputs, Model, State, WorstSection};
 use crate::step;
 
 use super::contacts::carry_contacts;
@@ -23,6 +23,9 @@ pub fn carry(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatri
     if !was.plastic.is_empty() {
         state.plastic = part_of(&was.plastic, parents.elements.iter().map(|e| e.index()));
     }
+    if !was.worst_sections.is_empty() {
+        state.worst_sections = worst_sections(lineage, was);
+    }
     state.sections = lineage.sections.iter().map(|section| section.and_then(|k| was.sections[k])).collect();
     // The stage that begins takes its own.
     state.stage_displacement.clear();
@@ -35,6 +38,50 @@ pub fn carry(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatri
     keep_spin(lineage, (old, was), masses, new, &mut state);
     carry_contacts(lineage, (old, was), new, &mut state);
     state
+}
+
+/// The state after a section of rock has broken in the middle of a stage.
+pub fn carry_break(lineage: &Lineage, before: (&Model, &State), masses: &MassMatrix, new: &Model, time: f64) -> State {
+    let (old, was) = before;
+    let mut state = carry(lineage, before, masses, new);
+    if !was.stage_displacement.is_empty() {
+        let covers = || lineage.parents.covers.iter();
+        state.stage_displacement = part_of(&was.stage_displacement, covers().map(|c| c.index()));
+        let mass = |k: usize, parent: usize| new.mass_matrix.row_sum[k] / old.mass_matrix.row_sum[parent];
+        let share = |(k, parent): (usize, &CoverId)| was.stage_force[parent.index()] * mass(k, parent.index());
+        state.stage_force = covers().enumerate().map(share).collect();
+    }
+    release(lineage, new, &mut state, time);
+    state
+}
+
+/// Begins to let go of sections that have just broken: of what their bonds carry.
+fn release(lineage: &Lineage, new: &Model, state: &mut State, time: f64) {
+    let strength = state.drive.strength_factor_now(time);
+    let mut carried = vec![[0.0_f64; 2]; new.sections.list.len()];
+    for (contact, bond) in state.contacts.iter().zip(&state.bonds) {
+        let Some(section) = bond.section.filter(|section| lineage.sections[section.index()].is_none()) else {
+            continue;
+        };
+        let law = &state.laws[bond.law];
+        let own = law.section_bond([0.0; 2], bond.lengths[1], strength, [f64::INFINITY; 2]);
+        let used = own.used([contact.normal_force, contact.shear_force]);
+        carried[section.index()] = [0, 1].map(|k| carried[section.index()][k].max(used[k]));
+    }
+    for (k, _) in lineage.sections.iter().enumerate().filter(|(_, parent)| parent.is_none()) {
+        state.sections[k] = Some(Release { carried: carried[k], left: 1.0 });
+    }
+}
+
+/// The worst sections of the blocks that stay whole; those of parts are yet to be looked for.
+fn worst_sections(lineage: &Lineage, was: &State) -> Vec<WorstSection> {
+    let mut parts = vec![0; was.worst_sections.len()];
+    lineage.parents.blocks.iter().for_each(|parent| parts[parent.index()] += 1);
+    let of = |parent: &BlockId| match parts[parent.index()] {
+        1 => was.worst_sections[*parent],
+        _ => WorstSection::default(),
+    };
+    lineage.parents.blocks.iter().map(of).collect()
 }
 
 /// What parts have of the whole that they were.

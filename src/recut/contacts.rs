@@ -236,7 +236,15 @@ impl Carry<'_> {
             ..contact.history
         };
         settle(contact, self.new, &mut history);
-        Loaded { history, bond: BondHistory::default(), shares: None }
+        Loaded { history, bond: self.new_bond(contact), shares: None }
+    }
+
+    /// The bond of a contact on a face that the cut has made, which lets go with the section that has broken there.
+    fn new_bond(&self, contact: &VertexEdge) -> BondHistory {
+        let section = self.new.sections.of(contact.history.edge);
+        let bond =
+            |_| BondHistory { damage: 0.0, lengths: [contact.length, contact.bonded], law: contact.law, section };
+        section.map_or_else(BondHistory::default, bond)
     }
 
     /// Mean stress (Pa) of the rock before the cut on both sides of a node, along the face.

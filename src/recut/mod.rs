@@ -8,6 +8,6 @@ mod lineage;
 mod parents;
 mod places;
 
-pub use carry::carry;
+pub use carry::{carry, carry_break};
 pub use kept_nodes::keep_nodes;
 pub use lineage::Lineage;

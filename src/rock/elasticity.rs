@@ -36,6 +36,11 @@ impl Elasticity {
         self.lambda + 2.0 * self.mu
     }
 
+    /// Modulus E/(1 − ν²) (Pa) of plane strain, or E of plane stress.
+    pub fn plane_modulus(&self) -> f64 {
+        4.0 * self.mu * (self.lambda + self.mu) / (self.lambda + 2.0 * self.mu)
+    }
+
     /// ρ·cp and ρ·cs (Pa·s/m): stress of a plane wave over its particle velocity.
     pub fn impedances(&self) -> [f64; 2] {
         [self.confined_modulus(), self.mu].map(|modulus| (modulus * self.density).sqrt())

@@ -17,6 +17,8 @@ pub enum EventKind {
     Overlapped,
     /// The last bond of a joint that softens broke: of a rock bridge, as a rule.
     Broken,
+    /// A block broke in two.
+    Cut,
 }
 
 /// Something that happened for the first time.
@@ -29,7 +31,8 @@ pub struct Event {
     pub subject: u32,
     /// End of the internal step in which it happened (s).
     pub time: f64,
-    /// Number of the other block of an overlap; `u32::MAX` for events of other kinds.
+    /// Number of the other block of an overlap, or of the part that a cut has made; `u32::MAX` for events of other
+    /// kinds.
     pub other: u32,
     /// Depth of an overlap when it was found (m); 0 for events of other kinds.
     pub depth: f64,

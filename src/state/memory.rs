@@ -76,6 +76,8 @@ impl State {
             columns,
             support_force,
             support_rest,
+            worst_sections,
+            cuts,
             fix_active,
             bolts,
             drive: Drive { from, to, since: _, until: _, before, moved },
@@ -108,6 +110,7 @@ impl State {
             ("supports and bolts", sum(&[support_force, support_rest, fix_active, bolts])),
             ("inputs", inputs(from) + inputs(to) + sum(&[&before.rate, moved])),
             ("events", events(happened) + removed.bytes()),
+            ("sections", worst_sections.bytes() + cuts.bytes()),
         ]
     }
 }

@@ -2,6 +2,7 @@
 //! (buffers).
 
 pub mod bytes;
+mod cut;
 mod element;
 mod events;
 mod inputs;
@@ -12,14 +13,15 @@ mod model;
 mod quantity;
 mod workspace;
 
+pub use cut::{Cut, WorstSection};
 pub use events::{Event, EventKind, Events};
 pub use inputs::{Course, Drive, Input, Inputs};
 pub use integrator::{Buffers, OtherIntegrator};
 pub use ledger::{BALANCE, BoltEnergies, ENERGIES, Ledger};
 pub use memory::Part;
 pub use model::{
-    BaseMotion, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary, TimedRecord, Water,
-    WaterSurface,
+    BaseMotion, Breaking, BreakingRock, Fixity, FreeFieldPoint, Model, MotionKind, Port, PortKind, QuietBoundary,
+    TimedRecord, Water, WaterSurface,
 };
 pub use quantity::Quantity;
 pub use workspace::{
@@ -92,6 +94,10 @@ pub struct State {
     pub support_force: Vec<f64>,
     /// Displacement along each support's direction at which it carries only its preload (m).
     pub support_rest: Vec<f64>,
+    /// The section of each block that is nearest to its strength; empty in a model whose rock does not break.
+    pub worst_sections: Vec<WorstSection>,
+    /// Sections of rock that have broken, in their order.
+    pub cuts: Vec<Cut>,
     /// Whether each fixity holds.
     pub fix_active: Vec<bool>,
     /// Blocks that have been excavated.
@@ -131,7 +137,7 @@ pub struct State {
 clone_without_allocating! {
     State {
         stage stage_start stage_starts most_rest stage_step step part dt_last displacement velocity contacts
-        bonds sections found friction_delay neighbours support_force support_rest fix_active removed laws
+        bonds sections found friction_delay neighbours support_force support_rest worst_sections cuts fix_active removed laws
         law_switch damping water_density stage_displacement stage_force drive bolts plastic columns acceleration
         static_stretch events ledger counters
     }

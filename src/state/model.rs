@@ -7,8 +7,8 @@ use crate::contact::{
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
-    Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, PreStress, Record, StressField,
-    YieldingRock, pressure,
+    Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, PreStress, Record, RockStrength,
+    StressField, YieldingRock, pressure,
 };
 
 use super::{OtherIntegrator, SelectionBuffers};
@@ -175,6 +175,34 @@ pub struct FreeFieldPoint {
     pub stiffness: Vector,
 }
 
+/// A rock whose blocks break.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BreakingRock {
+    /// Its strength.
+    pub strength: RockStrength,
+    /// Law of its cracks.
+    pub law: LawId,
+    /// Whether its blocks also split from within.
+    pub cores: bool,
+}
+
+/// How rock breaks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Breaking {
+    /// By rock; none of rock that never breaks.
+    pub rocks: Vec<Option<BreakingRock>>,
+    /// Internal steps of a dynamic stage from one search to the next.
+    pub every: u64,
+    /// Longest section (m) that breaks.
+    pub longest: f64,
+    /// Least area of a part (m²).
+    pub least_part: f64,
+    /// Most parts that breaking may add.
+    pub parts_max: usize,
+    /// Most cuts that it may make.
+    pub cuts_max: usize,
+}
+
 /// Covers, rocks, boundary, laws, loads and numerical choices of one model.
 #[doc(alias = "slope")]
 #[derive(Debug, Clone)]
@@ -210,8 +238,10 @@ pub struct Model {
     pub trace_law: Vec<LawId>,
     /// Law of contacts between faces that were no joints.
     pub default_law: LawId,
-    /// Sections of rock bridges that break as a whole.
+    /// Sections of rock bridges that break as a whole, and those of rock that has broken.
     pub sections: Sections,
+    /// How rock breaks, if any does.
+    pub breaking: Option<Breaking>,
     /// Fixities.
     pub fixities: Vec<Fixity>,
     /// Supports of all fixities.

@@ -3,7 +3,7 @@
 use crate::contact::EdgeId;
 use crate::cover::{self, BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{self, LoadAction, pressure};
+use crate::mechanics::{self, Forces, LoadAction, pressure};
 use crate::state::{Drive, Model, Port, State, Water};
 
 use super::{Substep, quiet};
@@ -21,7 +21,7 @@ pub(super) fn load(model: &Model, state: &State, step: &Substep, force: &mut Vec
     force.clear();
     if pushes(model, state) {
         force.resize(model.covers.cover_count(), Vector::zeros());
-        push_forces(model, state, step.time, step.ramp(state), force);
+        push_forces(model, state, step.time, step.ramp(state), &mut force[..]);
     }
 }
 
@@ -41,9 +41,8 @@ fn pushes(model: &Model, state: &State) -> bool {
         })
 }
 
-/// Adds to `force` (N/m per cover) what loads and inputs push with at time `t` (s); inputs and water act by their share
-/// `ramp`, as gravity does.
-pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut [Vector]) {
+/// Gives what loads and inputs push with at time `t` (s); inputs and water act by their share `ramp`, as gravity does.
+pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut (impl Forces + ?Sized)) {
     for load in &model.loads {
         let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
         let covers = |b: BlockId| model.covers.covers_of(b);
@@ -65,11 +64,11 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
     }
     push_blocks(model, state, share, ramp, force);
     for (k, support) in quiet::frozen(model, state) {
-        mechanics::spread(&support.covers, &support.weights, support.direction * state.support_force[k], force);
+        force.at_point(&support.covers, &support.weights, support.direction * state.support_force[k]);
     }
 }
 
-fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut [Vector]) {
+fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut (impl Forces + ?Sized)) {
     for block in model.covers.blocks().filter(|&b| !state.removed[b]) {
         let (f, moment) = state.drive.block(block, share);
         if f != Vector::zeros() || moment != 0.0 {
@@ -82,7 +81,7 @@ fn push_blocks(model: &Model, state: &State, share: f64, ramp: f64, force: &mut 
 
 /// The pressure (Pa, where positive) in the pores of rock pushes the covers of its elements apart; the skeleton carries
 /// the rest (Eq. 39a).
-fn push_pores(model: &Model, state: &State, pressure: impl Fn(Point) -> f64, force: &mut [Vector]) {
+fn push_pores(model: &Model, state: &State, pressure: impl Fn(Point) -> f64, force: &mut (impl Forces + ?Sized)) {
     let covers = &model.covers;
     for e in covers.elements().filter(|&e| !state.removed[covers.element_block[e]] && model.is_porous(e)) {
         let centroid = covers.element_centroid[e];
@@ -92,7 +91,7 @@ fn push_pores(model: &Model, state: &State, pressure: impl Fn(Point) -> f64, for
             let at = model.deformation(e, &state.displacement);
             let gradients = &covers.gradients[covers.element_triangle[e].set as usize];
             for (&cover, &gradient) in covers.element_covers[e].iter().zip(gradients) {
-                force[cover] += at.carry_normal(gradient) * push;
+                force.on_rock(cover, at.carry_normal(gradient) * push);
             }
         }
     }
@@ -105,7 +104,7 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    fn push_water(&self, water: &Water, level: f64, weight: f64, force: &mut [Vector]) {
+    fn push_water(&self, water: &Water, level: f64, weight: f64, force: &mut (impl Forces + ?Sized)) {
         let surface = &water.surfaces[self.state.stage as usize];
         let rise = level - surface.level;
         for &edge in &water.edges {
@@ -120,7 +119,7 @@ impl Faces<'_> {
         }
     }
 
-    fn push_port(&self, port: &Port, traction: Vector, pressure: f64, force: &mut [Vector]) {
+    fn push_port(&self, port: &Port, traction: Vector, pressure: f64, force: &mut (impl Forces + ?Sized)) {
         if traction == Vector::zeros() && pressure == 0.0 {
             return;
         }
@@ -146,17 +145,15 @@ impl Faces<'_> {
 
     /// Spreads forces at both ends of an edge over their covers, or over those of its sliver, whose pores have a
     /// pressure that balances them.
-    fn spread(&self, edge: EdgeId, sliver: Option<ElementId>, forces: [Vector; 2], force: &mut [Vector]) {
+    fn spread(&self, edge: EdgeId, sliver: Option<ElementId>, forces: [Vector; 2], force: &mut (impl Forces + ?Sized)) {
         let Model { boundary, covers, .. } = self.model;
         if self.state.removed[boundary.block[edge]] {
             return;
         }
-        for (k, f) in [edge, boundary.after(edge)].into_iter().zip(forces) {
-            let (covers, weights) = match sliver {
-                Some(sliver) => (covers.element_covers[sliver], covers.weights(sliver, boundary.reference[k])),
-                None => (boundary.covers[k], boundary.weights[k]),
-            };
-            mechanics::spread(&covers, &weights, f, force);
-        }
+        let ends = [edge, boundary.after(edge)].map(|k| match sliver {
+            Some(sliver) => (covers.element_covers[sliver], covers.weights(sliver, boundary.reference[k])),
+            None => (boundary.covers[k], boundary.weights[k]),
+        });
+        force.on_edge(&ends.map(|end| end.0), &ends.map(|end| end.1), forces);
     }
 }

@@ -32,6 +32,14 @@ pub enum Failure {
         /// Limit (m).
         limit: f64,
     },
+    /// Rock has broken too often.
+    #[error("the rock breaks once more than {limit} times (raise fracture.{key}, or the strength of the rock)")]
+    Parts {
+        /// Limit.
+        limit: usize,
+        /// Key of the case that sets it.
+        key: &'static str,
+    },
 }
 
 /// A numerical failure with its block, position and time.

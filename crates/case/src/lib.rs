@@ -7,6 +7,7 @@ mod drawing;
 mod expand;
 mod fingerprint;
 mod fix;
+mod fracture;
 mod ground;
 mod ground_motion;
 mod hoek_brown;
@@ -38,11 +39,14 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use key::{Key, fail};
+
 pub use bolt::{Anchorage, Bolt, BoltPattern, Support};
 pub use domain::{Domain, JointTrace, Mesh};
 pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use fix::{Axes, Fix};
+pub use fracture::{Fracture, RockFracture};
 pub use ground::{Axis, BaseMotion, FreeField, Quiet, RecordKeys};
 pub use ground_motion::GroundMotion;
 pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
@@ -122,6 +126,9 @@ pub struct Case {
     /// Rock bridges that can break, drawn by hand.
     #[serde(default, rename = "bridge", skip_serializing_if = "Vec::is_empty")]
     pub bridges: Vec<Bridge>,
+    /// How rock with a table `fracture` breaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fracture: Option<Fracture>,
     /// Acceleration of gravity.
     #[serde(default)]
     pub gravity: Gravity,
@@ -194,6 +201,11 @@ impl Case {
         self.rocks.values().any(Rock::yields)
     }
 
+    /// Whether any rock breaks.
+    pub fn breaks(&self) -> bool {
+        self.rocks.values().any(|rock| rock.fracture.is_some())
+    }
+
     /// Young's modulus over the weight γH of the model (γ of the rock, H the height of the outline) of the rock that
     /// has least of it and yields; none without such rock or without gravity.
     pub fn least_stiffness(&self) -> Option<f64> {
@@ -210,11 +222,18 @@ impl Case {
         [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Refuses stages that cut the rock, on behalf of one that cannot follow a model whose blocks change.
+    /// Refuses stages that cut the rock and rock that breaks, on behalf of one that cannot follow a model whose blocks
+    /// change.
     ///
     /// # Errors
-    /// The first cut of a stage.
+    /// The first rock that breaks, or the first cut of a stage.
     pub fn refuse_cuts(&self, who: &str) -> Result<(), Invalid> {
+        if let Some((name, _)) = self.rocks.iter().find(|(_, rock)| rock.fracture.is_some()) {
+            let key = Key::root().field("rock").field(name).field("fracture");
+            let message =
+                format!("is for `enmm run`, and {who} cannot follow blocks that break; remove it from the case");
+            return fail(&key, message);
+        }
         let cut = self.stages.iter().position(|stage| !stage.cuts.is_empty());
         cut.map_or(Ok(()), |k| {
             let message = format!(

@@ -8,13 +8,14 @@ use crate::keys::{Rule, unit};
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{
     Bolt, BoltPattern, Case, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh, Output, Port,
-    RandomOf, Rock, Stage, Tessellation, Water,
+    RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
 };
 
 /// Tables whose keys have usual values, by their place in a case: without the numbers of lists, and with `*` for names.
-const TABLES: [(&str, &[Rule]); 15] = [
+const TABLES: [(&str, &[Rule]); 16] = [
     ("rock.*", Rock::KEYS),
     ("rock.*.hoek_brown", HoekBrown::KEYS),
+    ("rock.*.fracture", RockFracture::KEYS),
     ("in_situ", InSitu::KEYS),
     ("joint_law.*", JointLaw::KEYS),
     ("stage", Stage::KEYS),

@@ -3,7 +3,7 @@
 use crate::keys::shared::{ANGLE, DILATION, PLACE, ROCK_DENSITY, STRENGTH};
 use crate::keys::unit::{NUMBER, PASCAL};
 use crate::keys::{Range, keys, words};
-use crate::{HoekBrown, PointList};
+use crate::{HoekBrown, PointList, RockFracture};
 
 words! {
     /// Plane strain or plane stress.
@@ -50,6 +50,9 @@ keys! {
         /// Tensile strength (Pa); default: the apex of the Mohr–Coulomb surface, or s·σci/mb of Hoek–Brown.
         pub tension: Option<f64> =>
             STRENGTH.hint("leave it out for the apex").usual([100.0, 5e7], "rock has 1e4 to 2e7 Pa").label("Tension"),
+        /// Strength of its blocks, which break where a section through them has it; default: they never break.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub fracture: Option<RockFracture>,
         /// Polygon (m): elements whose centroid lies inside are of this rock.
         pub region: Option<PointList> => PLACE,
         /// Points (m): the blocks that hold them are of this rock.

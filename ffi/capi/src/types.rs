@@ -156,6 +156,8 @@ pub enum enmm_event_kind {
     ENMM_EVENT_OVERLAPPED = 3,
     /// The last bond of a rock bridge broke, or of a joint with an energy of fracture; in the initial equilibrium, too.
     ENMM_EVENT_BROKEN = 4,
+    /// A block broke in two: `subject` goes on, `other` is the number of the new part.
+    ENMM_EVENT_CUT = 5,
 }
 
 /// Weight of a message.

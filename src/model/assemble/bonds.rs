@@ -11,8 +11,7 @@ use super::law_of;
 
 /// E/(1 − ν²) (Pa) of the stiffest rock.
 fn plane_modulus(model: &Model) -> f64 {
-    let modulus = |rock: &Elasticity| 4.0 * rock.mu * (rock.lambda + rock.mu) / (rock.lambda + 2.0 * rock.mu);
-    model.rocks.iter().map(modulus).fold(0.0, f64::max)
+    model.rocks.iter().map(Elasticity::plane_modulus).fold(0.0, f64::max)
 }
 
 /// Makes the laws of rock bridges bonds, so that a bridge is as long as it is drawn on any mesh, and its failure an

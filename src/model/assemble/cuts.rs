@@ -1,33 +1,55 @@
-//! Cuts of stages: lines that become joints in the middle of a run.
+//! Cuts: lines that become joints in the middle of a run, where a stage cuts the rock or a section of it breaks.
 
 use crate::contact::LawId;
 use crate::geometry::{NodingReport, Point};
-use crate::model::case::{Case, Invalid};
+use crate::model::case::{Case, Invalid, StageCut};
+use crate::state;
 
+use super::rock::crack_law;
 use super::{law_of, points};
 
-/// A line along which a stage cuts the rock.
+/// A line along which the rock is cut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cut {
-    /// Its key: `stage[1].cut[0]`.
+    /// Its key: `stage[1].cut[0]`, or of the rock that has broken.
     pub key: String,
     /// Its points (m).
     pub points: Vec<Point>,
     /// Its joint law.
     pub law: LawId,
+    /// Whether it is a section that has broken.
+    pub is_crack: bool,
 }
 
 impl Cut {
-    /// The cuts of all stages up to one, in their order.
-    pub fn up_to(case: &Case, stage: usize) -> Vec<Self> {
-        let stages = case.stages.iter().take(stage + 1).enumerate();
-        let cuts = stages.flat_map(|(stage, of)| of.cuts.iter().enumerate().map(move |(k, cut)| (stage, k, cut)));
-        let of = |(stage, k, cut): (usize, usize, &crate::model::case::StageCut)| Self {
+    /// The cuts of all stages up to one and of sections that have broken, in the order of time.
+    pub fn up_to(case: &Case, stage: usize, broken: &[state::Cut]) -> Vec<Self> {
+        let mut cuts = Vec::new();
+        for (number, of) in case.stages.iter().take(stage + 1).enumerate() {
+            cuts.extend(of.cuts.iter().enumerate().map(|(k, cut)| Self::of_stage(case, (number, k), cut)));
+            let then = broken.iter().filter(|cut| cut.stage as usize == number);
+            cuts.extend(then.map(|cut| Self::of_rock(case, cut)));
+        }
+        cuts
+    }
+
+    fn of_stage(case: &Case, (stage, k): (usize, usize), cut: &StageCut) -> Self {
+        Self {
             key: format!("stage[{stage}].cut[{k}]"),
             points: points(&cut.points),
             law: law_of(case, &cut.law).unwrap_or_default(),
-        };
-        cuts.map(of).collect()
+            is_crack: false,
+        }
+    }
+
+    fn of_rock(case: &Case, cut: &state::Cut) -> Self {
+        let name = case.rocks.keys().nth(usize::from(cut.rock)).map_or("", String::as_str);
+        Self {
+            key: format!("rock.{name}.fracture"),
+            points: cut.ends.to_vec(),
+            law: crack_law(case, usize::from(cut.rock)),
+            is_crack: true,
+        }
     }
 
     /// Refuses cuts of which nothing cuts rock; their traces begin with `first`.

@@ -65,6 +65,7 @@ pub(super) fn arrange_case(case: &Case, cuts: &[Cut], tell: &mut dyn FnMut(Build
     joints.traces.extend(islands);
     let uncut = pieces(&joints.traces, 0);
     let first_cut = joints.traces.len();
+    joints.cracks.extend((first_cut..).zip(cuts).filter(|(_, cut)| cut.is_crack).map(|(trace, _)| trace));
     joints.traces.extend(cuts.iter().map(|cut| (cut.points.clone(), cut.law)));
     tell(BuildStage::Arrangement);
     let arrangement = arrange(&mut uncut.into_iter(), &pieces(&joints.traces[first_cut..], first_cut))?;

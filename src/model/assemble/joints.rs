@@ -17,6 +17,8 @@ pub(super) struct Joints {
     pub set_start: Vec<usize>,
     /// Rock bridges among them: those of the sets, then those drawn by hand, then those at ends.
     pub bridges: Vec<usize>,
+    /// Sections that have broken among them.
+    pub cracks: Vec<usize>,
     pub default_law: LawId,
 }
 
@@ -68,7 +70,7 @@ pub(super) fn joints(case: &Case, low: Point, high: Point) -> Result<Joints, Inv
     for change in &case.law_regions {
         change_laws(case, change, &bridges, &mut traces);
     }
-    Ok(Joints { traces, set_start, bridges, default_law })
+    Ok(Joints { traces, set_start, bridges, cracks: Vec::new(), default_law })
 }
 
 /// Gives joints in a region their other law, rock bridges only where the region names theirs; a joint that leaves the

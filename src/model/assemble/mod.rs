@@ -30,7 +30,9 @@ use crate::mechanics::{
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
 use crate::recut::keep_nodes;
-use crate::state::{Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, QuietBoundary, State, Water};
+use crate::state::{
+    Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, QuietBoundary, State, Water, WorstSection,
+};
 
 use joints::Joints;
 use locator::Locator;
@@ -174,6 +176,7 @@ fn model(
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         sections: Sections::default(),
+        breaking: rock::breaking(case),
         fixities,
         supports,
         fixed_supports,
@@ -281,6 +284,10 @@ fn joint_laws(case: &Case, joints: &Joints, stiffness: f64) -> Result<Vec<JointL
     let laws = case.joint_laws.values().chain(&without);
     let mut laws: Vec<JointLaw> = laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect();
     bonds::of_bridges(case, joints, &mut laws)?;
+    laws.extend(rock::crack_laws(case).map(|law| {
+        let law = joint_law(&law, stiffness, case.solver.shear_ratio);
+        JointLaw { softening: law.softening.or(Some(Softening::AT_ONCE)), ..law }
+    }));
     Ok(laws)
 }
 
@@ -403,8 +410,8 @@ fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<L
                 let at = positions.point(&point().0, point().1)?;
                 LoadAction::Forces(vec![(at.covers, at.weights, vector(load.force))])
             }
-            LoadKind::Traction => LoadAction::Forces(
-                edge()?.iter().map(|p| (p.covers, p.middle(), vector(load.traction) * p.length())).collect(),
+            LoadKind::Traction => LoadAction::Tractions(
+                edge()?.iter().map(|p| (p.covers, p.weights, vector(load.traction) * p.length())).collect(),
             ),
             LoadKind::Pressure => LoadAction::Pressure(
                 edge()?.iter().map(|p| (p.covers, p.weights)).collect(),
@@ -468,6 +475,11 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         neighbours: Default::default(),
         support_force: model.supports.iter().map(|s| s.preload).collect(),
         support_rest: vec![0.0; model.supports.len()],
+        worst_sections: vec![
+            WorstSection::default();
+            model.breaking.as_ref().map_or(0, |_| model.covers.block_count())
+        ],
+        cuts: Vec::new(),
         fix_active: model.fixities.iter().map(|f| f.active).collect(),
         removed: vec![false; model.covers.block_count()],
         laws: model.laws.clone(),

@@ -1,10 +1,13 @@
 //! Which rock each element is made of, and the strength of rock.
 
+use crate::contact::LawId;
 use crate::cover::{Covers, ElementId};
 use crate::geometry::polygon;
-use crate::mechanics::{Averaging, Criterion, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, YieldingRock};
-use crate::model::case::{Case, Invalid, Plane, Rock};
-use crate::state::Model;
+use crate::mechanics::{
+    Averaging, Criterion, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, RockStrength, YieldingRock,
+};
+use crate::model::case::{self, Case, Invalid, Plane, Rock};
+use crate::state::{Breaking, BreakingRock, Model};
 
 use super::locator::Locator;
 use super::points;
@@ -39,6 +42,50 @@ fn criterion(rock: &Rock) -> Criterion {
             tension: rock.tension,
         }),
     }
+}
+
+/// How rock breaks; none of a case whose rock does not.
+pub(super) fn breaking(case: &Case) -> Option<Breaking> {
+    let of = |(k, rock): (usize, &Rock)| {
+        let fracture = rock.fracture.as_ref()?;
+        let strength = RockStrength {
+            tension: fracture.tension,
+            cohesion: fracture.cohesion,
+            friction: libm::tan(fracture.friction_deg.to_radians()),
+            characteristic: fracture
+                .tension_energy
+                .map_or(0.0, |energy| elasticity(rock).plane_modulus() * energy / fracture.tension.powi(2)),
+        };
+        Some(BreakingRock { strength, law: crack_law(case, k), cores: fracture.cores })
+    };
+    let case::Fracture { every, longest, least_part, parts_max, cuts_max } = case.fracture.clone().unwrap_or_default();
+    case.breaks().then(|| Breaking {
+        rocks: case.rocks.values().enumerate().map(of).collect(),
+        every: u64::from(every),
+        longest: longest.unwrap_or(f64::INFINITY),
+        least_part: least_part.unwrap_or_else(|| case.mesh.least_block().max(3f64.sqrt() * case.mesh.size.powi(2))),
+        parts_max: parts_max as usize,
+        cuts_max: cuts_max as usize,
+    })
+}
+
+/// The law of the cracks of a rock, by its place in the case: those of all rocks that break come after all others.
+pub(super) fn crack_law(case: &Case, rock: usize) -> LawId {
+    let before = case.rocks.values().take(rock).filter(|rock| rock.fracture.is_some()).count();
+    LawId::new(case.joint_laws.len().max(1) + before)
+}
+
+/// Joint laws of the cracks of all rocks that break, in the order of the rocks.
+pub(super) fn crack_laws(case: &Case) -> impl Iterator<Item = case::JointLaw> {
+    let broken = case.rocks.values().filter_map(|rock| rock.fracture.as_ref());
+    broken.map(|fracture| case::JointLaw {
+        cohesion: fracture.cohesion,
+        tension: fracture.tension,
+        residual_friction_deg: fracture.residual_friction_deg,
+        residual_cohesion: Some(0.0),
+        tension_energy: fracture.tension_energy,
+        ..case::JointLaw::frictional(fracture.friction_deg)
+    })
 }
 
 /// All rocks, that of each element, and the patches of those that can yield.

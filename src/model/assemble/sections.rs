@@ -4,18 +4,14 @@
 use crate::contact::{EdgeId, JointLaw, Section, SectionId, Sections, Softening};
 use crate::cover::BlockId;
 use crate::geometry::{Point, TraceId, Vector, cross, segment};
-use crate::mechanics::Elasticity;
+use crate::mechanics::{Elasticity, bending_strength, crack_time};
 use crate::model::case::{Breaks, Case, Integrator};
 use crate::state::Model;
 
 use super::joints::Joints;
 
-/// Strength in bending of a beam over its tensile strength, less 1: 1/(0.85 + 2.3 l/l_ch) (Eq. 22g).
-const BENDING: [f64; 2] = [0.85, 2.3];
 /// Characteristic length of a bridge over its length up to which it breaks as a whole.
 const BRITTLE: f64 = 4.0;
-/// Speed of a crack over that of Rayleigh waves.
-const CRACK_SPEED: f64 = 0.4;
 /// Round-off in places along a trace, over its length.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -69,15 +65,16 @@ struct Run {
     end: f64,
 }
 
-/// The rock bridges of a model; sections of those that break as a whole go to the model.
+/// The rock bridges of a model. Sections of those that break as a whole and of rock that has broken go to the model.
 pub(super) fn of_bridges(case: &Case, joints: &Joints, model: &mut Model) -> Vec<Bridge> {
-    if joints.bridges.is_empty() || case.solver.integrator == Integrator::Implicit {
+    if joints.bridges.is_empty() && joints.cracks.is_empty() || case.solver.integrator == Integrator::Implicit {
         return Vec::new();
     }
     let beside = Beside::new(model, joints);
     let (mut bridges, mut sections) = (Vec::new(), Vec::new());
     let mut of_edge = vec![None; model.boundary.len()];
-    for &trace in &joints.bridges {
+    for &trace in joints.bridges.iter().chain(&joints.cracks) {
+        let is_crack = joints.cracks.binary_search(&trace).is_ok();
         let law = model.trace_law[trace];
         let (own, softening) = (&model.laws[law], model.laws[law].softening);
         let Some(softening) = softening else { continue };
@@ -86,28 +83,27 @@ pub(super) fn of_bridges(case: &Case, joints: &Joints, model: &mut Model) -> Vec
             let line = run.line(model);
             let rock = beside.rock(run.blocks);
             let (bridge, crack_time) = bridge(trace, line, (own, softening), &rock);
-            let breaking = asked_or(asked, || breaking(own, &bridge, &run, line, model, &beside));
+            let breaking = match asked {
+                _ if is_crack => Breaking::BySection,
+                Some(Breaks::BySection) => Breaking::BySection,
+                Some(Breaks::ByNode) => Breaking::Asked,
+                None => breaking(own, &bridge, &run, line, model, &beside),
+            };
             if breaking == Breaking::BySection {
                 let id = SectionId::new(sections.len());
                 run.faces.iter().flatten().for_each(|edge| of_edge[edge.index()] = Some(id));
                 let (length, bending) = (bridge.length, bridge.bending);
                 sections.push(Section { ends: run.ends(model), length, law, bending, crack_time });
             }
-            bridges.push(Bridge { breaking, ..bridge });
+            if !is_crack {
+                bridges.push(Bridge { breaking, ..bridge });
+            }
         }
     }
     if !sections.is_empty() {
         model.sections = Sections { list: sections, of_edge };
     }
     bridges
-}
-
-fn asked_or(asked: Option<Breaks>, otherwise: impl FnOnce() -> Breaking) -> Breaking {
-    match asked {
-        Some(Breaks::BySection) => Breaking::BySection,
-        Some(Breaks::ByNode) => Breaking::Asked,
-        None => otherwise(),
-    }
 }
 
 /// A bridge along a line in a rock, and the time (s) that a crack takes across it.
@@ -118,19 +114,12 @@ fn bridge(
     rock: &Elasticity,
 ) -> (Bridge, f64) {
     let length = (to - from).norm();
-    let modulus = 4.0 * rock.mu * (rock.lambda + rock.mu) / (rock.lambda + 2.0 * rock.mu);
-    let characteristic = if law.tension > 0.0 { 0.5 * modulus * softening.opening / law.tension } else { 0.0 };
-    let bending =
-        if characteristic > 0.0 { 1.0 + 1.0 / (BENDING[0] + BENDING[1] * length / characteristic) } else { 1.0 };
+    let characteristic =
+        if law.tension > 0.0 { 0.5 * rock.plane_modulus() * softening.opening / law.tension } else { 0.0 };
+    let bending = bending_strength(length, characteristic);
     let place = from + (to - from) * 0.5;
     let bridge = Bridge { trace, place, length, characteristic, bending, breaking: Breaking::BySection };
-    (bridge, length / (CRACK_SPEED * rayleigh(rock)))
-}
-
-/// Speed (m/s) of Rayleigh waves, within 0.5 % (Viktorov 1967).
-fn rayleigh(rock: &Elasticity) -> f64 {
-    let poisson = 0.5 * rock.lambda / (rock.lambda + rock.mu);
-    rock.shear_wave_speed() * (0.87 + 1.12 * poisson) / (1.0 + poisson)
+    (bridge, crack_time(length, rock))
 }
 
 /// How a bridge breaks whose law does not say.

@@ -4,6 +4,7 @@
 pub(crate) mod bolts;
 pub(crate) mod checks;
 mod drawing;
+mod fracture;
 pub(crate) mod ground;
 mod joint_sets;
 mod joints;
@@ -48,6 +49,7 @@ impl Case {
             joints::validate_breaks(&key, law, self.has_bridges_of(name))?;
         }
         joint_sets::validate_law_regions(&root.field("law_region"), self)?;
+        fracture::validate_fracture(&root, self)?;
         self.gravity.check(&root.field("gravity"))?;
         loads::validate_fixes(&root.field("fix"), &self.fixes)?;
         loads::validate_loads(&root.field("load"), &self.loads)?;

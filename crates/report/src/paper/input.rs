@@ -1,7 +1,7 @@
 //! Input: section, rock, joints, water, loads, bolts, stages.
 
 use enmm_case::keys::Rule;
-use enmm_case::{Bolt, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, Rock, Section, Water};
+use enmm_case::{Bolt, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, Rock, RockFracture, Section, Water};
 use serde_json::Value;
 
 use super::number::{Digits, Number, length, plain, prefixed, steel_area};
@@ -72,7 +72,13 @@ fn named(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
 fn rocks(input: &Value) -> String {
     let row = |(name, rock): (&String, &Value)| {
         let name = vec![("Rock", name.as_str().into())];
-        [name, keys(Rock::KEYS, rock), keys(HoekBrown::KEYS, &rock["hoek_brown"])].concat()
+        [
+            name,
+            keys(Rock::KEYS, rock),
+            keys(HoekBrown::KEYS, &rock["hoek_brown"]),
+            keys(RockFracture::KEYS, &rock["fracture"]),
+        ]
+        .concat()
     };
     part("Rock", &listed(named(&input["rocks"]).map(row)))
 }

@@ -326,7 +326,7 @@ impl Model {
         let mesh_size = self.inner.case().mesh.size;
         let level = match event.kind {
             EventKind::Overlapped => enmm_log_level::ENMM_LOG_WARNING,
-            EventKind::Detached | EventKind::Slipped | EventKind::Failed | EventKind::Broken => {
+            EventKind::Detached | EventKind::Slipped | EventKind::Failed | EventKind::Broken | EventKind::Cut => {
                 enmm_log_level::ENMM_LOG_INFO
             }
         };
@@ -389,6 +389,9 @@ fn sentence(event: &Event, mesh_size: f64) -> String {
         EventKind::Slipped => format!("t = {time} s: joint {subject} slipped"),
         EventKind::Broken => format!("t = {time} s: the last bond of joint {subject} broke"),
         EventKind::Failed => format!("t = {time} s: block {subject} moved beyond the failure displacement"),
+        EventKind::Cut => {
+            format!("t = {time} s: block {subject} broke in two; the other part is block {}", event.other)
+        }
         EventKind::Overlapped => {
             format!("t = {time} s: {}: results about them are wrong from here on", event.overlap_text(mesh_size))
         }

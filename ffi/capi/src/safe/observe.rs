@@ -75,6 +75,7 @@ impl Model {
                 EventKind::Failed => enmm_event_kind::ENMM_EVENT_FAILED,
                 EventKind::Overlapped => enmm_event_kind::ENMM_EVENT_OVERLAPPED,
                 EventKind::Broken => enmm_event_kind::ENMM_EVENT_BROKEN,
+                EventKind::Cut => enmm_event_kind::ENMM_EVENT_CUT,
             },
             subject: event.subject,
             time: event.time,

@@ -186,5 +186,6 @@ fn kind_number(kind: EventKind) -> f64 {
         EventKind::Failed => 3.0,
         EventKind::Overlapped => 4.0,
         EventKind::Broken => 5.0,
+        EventKind::Cut => 6.0,
     }
 }

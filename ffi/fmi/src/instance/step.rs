@@ -157,7 +157,7 @@ impl Instance {
     pub(super) fn log_event(&mut self, event: &Event) {
         let (status, category) = match event.kind {
             EventKind::Overlapped => (Status::Warning, Category::Warning),
-            EventKind::Detached | EventKind::Slipped | EventKind::Failed | EventKind::Broken => {
+            EventKind::Detached | EventKind::Slipped | EventKind::Failed | EventKind::Broken | EventKind::Cut => {
                 (Status::Ok, Category::Events)
             }
         };
@@ -216,6 +216,7 @@ fn event_text(event: &Event, start: f64, mesh_size: f64) -> String {
         EventKind::Slipped => format!("joint {} slipped", event.subject),
         EventKind::Broken => format!("the last bond of joint {} broke", event.subject),
         EventKind::Failed => format!("block {} failed", event.subject),
+        EventKind::Cut => format!("block {} broke in two; the other part is block {}", event.subject, event.other),
         EventKind::Overlapped => event.overlap_text(mesh_size),
     };
     let meaning = if event.kind == EventKind::Overlapped { ": results about them are wrong from here on" } else { "" };

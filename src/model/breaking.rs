@@ -1,0 +1,139 @@
+//! Rock that breaks: the worst section of a model is looked for as it moves, and cuts it when it has its strength.
+
+use crate::cover::BlockId;
+use crate::fracture::{Outlines, Search, Watched, watch};
+use crate::recut;
+use crate::state::{Breaking, Cut, Event, EventKind, WorstSection};
+use crate::step::{self, Failure, Regime, StepError, StepReport, Wanted};
+
+use super::Simulation;
+
+/// Unbalanced ratio of a static stage, and kinetic energy over that of strain, below which the forces on blocks are
+/// those of rest within 0.3 %.
+const BALANCED: [f64; 2] = [1e-3, 1e-5];
+/// Share of its strength from which on a block is looked at in every search, and in every step.
+const NEAR: [f64; 2] = [0.3, 0.5];
+/// Searches from one look at blocks that are far from their strength to the next.
+const SELDOM: u64 = 4;
+
+impl Simulation {
+    /// Takes down what the rock carries that is looked at in the next step: in a dynamic stage every few steps, and
+    /// blocks near their strength in each; in a static one all rock when a report says whether it is at rest.
+    pub(super) fn watch(&self, wanted: Wanted) -> Option<Watched> {
+        let breaking = self.model().breaking.as_ref()?;
+        if self.workspace.selection.kept_gaps.is_some() {
+            return None;
+        }
+        let outlines = self.outlines.get_or_init(|| Outlines::new(self.model()));
+        let is_static = matches!(self.regime, Regime::Static { .. });
+        if is_static && !(wanted == Wanted::Report && self.rest_due()) {
+            return None;
+        }
+        let state = self.state();
+        let is_due = |block: BlockId| {
+            let share = state.worst_sections[block].share;
+            let searches = state.step.is_multiple_of(breaking.every);
+            let all = state.step.is_multiple_of(breaking.every * SELDOM);
+            is_static || all || share >= NEAR[1] || searches && share >= NEAR[0]
+        };
+        let can_move = |block: BlockId| !self.workspace.mass_matrix.fixed[block] && !state.removed[block];
+        let blocks = outlines.all().map(|outline| outline.block);
+        let blocks: Vec<BlockId> = blocks.filter(|&block| can_move(block) && is_due(block)).collect();
+        (!blocks.is_empty()).then(|| watch(self.model(), state, blocks, self.time()))
+    }
+
+    /// Looks for the section that is nearest to its strength, and cuts the rock along it when it has that.
+    ///
+    /// # Errors
+    /// The rock has more parts than the case allows.
+    pub(super) fn break_rock(&mut self, watched: &Watched, made: &mut StepReport) -> Result<(), StepError> {
+        let model = &self.built.model;
+        let (Some(breaking), Some(outlines)) = (&model.breaking, self.outlines.get()) else { return Ok(()) };
+        let is_static = matches!(self.regime, Regime::Static { .. });
+        let rests = made.unbalanced <= BALANCED[0] && made.kinetic_of_most <= BALANCED[1] * made.ledger.strain;
+        if is_static && !rests {
+            return Ok(());
+        }
+        // The state is that of the end of the step.
+        let all_wanted = is_static || (self.state.step - 1).is_multiple_of(breaking.every);
+        let (state, workspace, regime) = (&self.state, &self.workspace, self.regime);
+        let found = Search { model, state, workspace, outlines, regime }.worst(watched, all_wanted);
+        let mut failed: Vec<(f64, u32)> = Vec::new();
+        for (block, section) in found {
+            if section.share >= 1.0 && !section.barred {
+                failed.push((section.share, model.labels[block]));
+            }
+            self.state.worst_sections[block] = section;
+        }
+        failed.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        for (_, label) in failed {
+            if self.cut_block(label)? {
+                // What it was at rest with has changed.
+                (made.unbalanced, self.state.most_rest) = (1.0, None);
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Cuts the rock along the worst section of a block; false if the model cannot go on with that cut.
+    fn cut_block(&mut self, label: u32) -> Result<bool, StepError> {
+        let Some(block) = self.block_labelled(label) else { return Ok(false) };
+        let (section, stage) = (self.state.worst_sections[block], self.state.stage);
+        self.check_parts(block, &section)?;
+        let rock = self.outlines.get().and_then(|outlines| outlines.of(block)).map_or(0, |outline| outline.rock);
+        let WorstSection { share, ends, carries, failure, .. } = section;
+        let (step, time) = (self.state.step, self.time());
+        let cut = Cut { ends, stage, step, time, block: label, rock, share, carried: carries, failure };
+        let cuts = [&self.state.cuts[..], &[cut]].concat();
+        let ground = self.ground(stage as usize, &cuts).ok();
+        let parts = ground.as_ref().map(|ground| ground.built.model.covers.block_count());
+        let Some((ground, lineage)) = ground.and_then(|ground| Some((ground.built, ground.lineage?))) else {
+            self.state.worst_sections[block].barred = true;
+            return Ok(false);
+        };
+        if parts == Some(self.model().covers.block_count()) {
+            self.state.worst_sections[block].barred = true;
+            return Ok(false);
+        }
+        let before = self.energy();
+        let masses = &self.workspace.mass_matrix;
+        let now = (&self.built.model, &self.state);
+        self.state = recut::carry_break(&lineage, now, masses, &ground.model, time);
+        self.state.cuts = cuts;
+        self.stand_on(ground);
+        step::prepare(&self.built.model, &self.state, &mut self.workspace);
+        self.state.ledger.fracture += before - self.energy();
+        let other = self.model().labels.iter().copied().max().unwrap_or(label);
+        self.state.events.list.push(Event { kind: EventKind::Cut, subject: label, time, other, depth: 0.0 });
+        self.looks.forget();
+        Ok(true)
+    }
+
+    /// Refuses a cut that would make more parts than the case allows.
+    fn check_parts(&self, block: BlockId, section: &WorstSection) -> Result<(), StepError> {
+        let Some(Breaking { parts_max, cuts_max, .. }) = self.model().breaking else { return Ok(()) };
+        let cuts = self.state.cuts.len();
+        let failure = if cuts >= parts_max {
+            Failure::Parts { limit: parts_max, key: "parts_max" }
+        } else if cuts >= cuts_max {
+            Failure::Parts { limit: cuts_max, key: "cuts_max" }
+        } else {
+            return Ok(());
+        };
+        let position = (section.ends[0] + section.ends[1]) * 0.5;
+        Err(StepError { block: self.model().labels[block], position, time: self.time(), failure })
+    }
+
+    /// Energy (J/m) of rock and springs.
+    fn energy(&self) -> f64 {
+        let energies = self.energies();
+        let (state, ahead) = self.look_ahead();
+        energies.kinetic + energies.strain + energies.potential + step::stored(self.model(), &state, &ahead)
+    }
+
+    /// Sections of rock that have broken so far.
+    pub fn cuts(&self) -> &[Cut] {
+        &self.state.cuts
+    }
+}
