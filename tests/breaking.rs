@@ -1,7 +1,8 @@
 //! Claim: a block of rock that can break does so at the section that equilibrium and the strength of the rock say, on
 //! any mesh (theory §13, Blocks that break).
 
-use enmm::model::Simulation;
+use enmm::model::bytes::{Keeper, decode, encode};
+use enmm::model::{EventKind, Simulation, State, StepReport};
 
 use crate::common::{run_stage, simulation, step};
 
@@ -225,4 +226,95 @@ fn a_disc_splits_under_two_loads() {
             assert!(lean < 5.0, "{lean}°");
         }
     }
+}
+
+/// A bar that breaks at its root when gravity acts at once, and falls.
+fn falling(tension: f64) -> Simulation {
+    overhang(0.25, 10.0, tension, &AT_ONCE.replace("duration = 0.05", "duration = 0.5"))
+}
+
+fn bytes(state: &State) -> Vec<u8> {
+    encode(Keeper::Model, state, "case").unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A run in one go, on one thread and on several, one that goes on from bytes in the middle of a release, and one that
+/// goes back before the break and on again.
+#[test]
+fn a_break_has_the_same_bits_by_threads_bytes_and_rollback() {
+    let mut run = falling(0.6e6);
+    let before = {
+        step(&mut run, 100);
+        run.state().clone()
+    };
+    while run.cuts().is_empty() {
+        step(&mut run, 1);
+    }
+    step(&mut run, 5);
+    let release = run.state().clone();
+    assert!(release.sections[0].is_some_and(|release| 0.0 < release.left && release.left < 1.0));
+    step(&mut run, 400);
+    let end = bytes(run.state());
+
+    let mut serial = falling(0.6e6);
+    serial.set_serial(true);
+    step(&mut serial, run.state().step);
+    assert_eq!(bytes(serial.state()), end, "serial");
+
+    let read: State = decode(Keeper::Model, &bytes(&release), "case").unwrap_or_else(|e| panic!("{e}"));
+    let mut resumed = falling(0.6e6);
+    resumed.check(&read).unwrap_or_else(|e| panic!("{e}"));
+    resumed.restore(read);
+    step(&mut resumed, 400);
+    assert_eq!(bytes(resumed.state()), end, "resumed");
+
+    for _ in 0..3 {
+        run.return_to(&before);
+        assert_eq!(run.model().covers.block_count(), 1);
+        step(&mut run, serial.state().step - before.step);
+        assert_eq!(bytes(run.state()), end, "rolled back");
+    }
+}
+
+/// The part of the bar that has broken off falls freely, turning, and no energy comes from anywhere.
+#[test]
+fn a_bar_that_breaks_off_falls() {
+    let mut bar = falling(0.6e6);
+    let mut reports = Vec::new();
+    while bar.time() < 0.5 {
+        reports.push(bar.advance(true).unwrap_or_else(|e| panic!("{e}")));
+    }
+    let cut = bar.cuts()[0].step as usize;
+    // The report of a step is that of its start.
+    let [before, after] = [cut - 1, cut].map(|step| reports[step].ledger);
+    let jump = after.residual() - before.residual();
+    println!("residual jumps by {jump:e} J at a strain energy of {:e} J; {:?}", before.strain, bar.state().ledger);
+    assert!(jump.abs() < 0.01 * before.strain, "{jump}");
+    let of_rock = |report: &StepReport| report.ledger.kinetic + report.ledger.strain + report.ledger.potential;
+    let most = reports[cut..].iter().map(of_rock).fold(f64::NEG_INFINITY, f64::max);
+    assert!(most < 0.01 * before.strain, "{most}");
+    let fracture = bar.state().ledger.fracture;
+    assert!(0.0 < fracture && fracture < before.strain, "{fracture}");
+    let residual = reports.last().map_or(0.0, |report| report.ledger.residual_relative());
+    assert!(residual.abs() < 1e-5, "{residual}");
+    let events: Vec<_> = bar.state().events.list.iter().filter(|event| event.kind == EventKind::Cut).collect();
+    assert_eq!((events.len(), events[0].subject, events[0].other), (1, 0, 1));
+    let part = bar.block_labelled(1).map(|block| bar.motion_of(block)).expect("the part");
+    // It has fallen for half a second less the time to the break and that of the crack.
+    let fall = part.displacement.y / (-0.5 * G * 0.5 * 0.5);
+    assert!((0.85..1.0).contains(&fall), "{fall}");
+}
+
+/// With a strength that holds, the same bits as without: rock is looked at, and nothing else changes.
+#[test]
+fn rock_that_holds_moves_as_rock_that_cannot_break() {
+    let plain = |text: String| {
+        let (start, end) =
+            (text.find("[rock.rock.fracture]").expect("a strength"), text.find("[[fix]]").expect("a fix"));
+        text[..start].to_owned() + &text[end..]
+    };
+    let text = overhang_text(0.25, 10.0, 50e6, AT_ONCE);
+    let mut runs = [simulation(&plain(text.clone())), simulation(&text)];
+    runs.iter_mut().for_each(|run| step(run, 300));
+    let motion = |run: &Simulation| (run.state().displacement.clone(), run.state().velocity.clone());
+    assert_eq!(motion(&runs[0]), motion(&runs[1]));
 }

@@ -7,16 +7,17 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Rooms of `src/` in rank order, each with its most lines; each imports only from those before it.
-const ROOMS: [(&str, usize); 10] = [
+const ROOMS: [(&str, usize); 11] = [
     ("geometry", 3450),
     ("cover", 1300),
     ("rock", 1400),
-    ("mechanics", 2700),
+    ("mechanics", 2900),
     ("contact", 7650),
-    ("state", 2050),
+    ("state", 2200),
     ("step", 3400),
-    ("recut", 900),
-    ("model", 6000),
+    ("fracture", 1100),
+    ("recut", 1150),
+    ("model", 6300),
     ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;

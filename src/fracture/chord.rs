@@ -4,7 +4,7 @@ use crate::cover::ElementId;
 use crate::geometry::{Point, Vector, cross, polygon, segment};
 use crate::state::Model;
 
-use super::outline::Outline;
+use super::outline::{End, Outline};
 
 /// Distance over the mesh size within which an end is a node that is there already.
 const SNAP: f64 = 1e-3;
@@ -15,15 +15,6 @@ const DEPTH: f64 = 1.0 / 3.0;
 
 /// Cosine of the angle between a section and the normal of a face up to which it is square to that.
 const SQUARE: f64 = 0.999_999;
-
-/// An end of a section: an edge of the outline, and the share of the way along it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct End {
-    /// Place of the edge in the outline.
-    pub edge: usize,
-    /// Share of the way.
-    pub along: f64,
-}
 
 /// A section through a block in the reference configuration.
 #[derive(Debug, Clone)]

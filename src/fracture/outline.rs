@@ -1,24 +1,12 @@
-//! Outlines of blocks that can break, in the reference configuration, and the sections that are looked at first.
-
-use std::sync::OnceLock;
+//! Outlines of blocks that can break, in the reference configuration.
 
 use crate::contact::EdgeId;
 use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, orientation, polygon, segment};
 use crate::state::Model;
 
-use super::chord::{Chord, End};
-use super::cores::Cores;
-
 /// Distance over the mesh size within which a support holds an edge.
 const HELD: f64 = 1e-6;
-
-/// The blocks of a model that can break.
-#[derive(Debug, Clone)]
-pub struct Outlines {
-    /// Of each block; none of one that cannot break.
-    blocks: Vec<Option<Outline>>,
-}
 
 /// A block that can break.
 #[derive(Debug, Clone)]
@@ -37,40 +25,20 @@ pub struct Outline {
     pub is_convex: bool,
     /// Longest distance (m) between two of its points, by its box.
     pub extent: f64,
-    /// Sections from its nodes and the middles between them along the normals of its faces.
-    chords: OnceLock<Vec<Chord>>,
-    /// Its cores.
-    pub cores: Cores,
 }
 
-impl Outlines {
-    /// Those of a model.
-    pub fn new(model: &Model) -> Self {
-        let mut edges = vec![Vec::new(); model.covers.block_count()];
-        model.boundary.edges().for_each(|k| edges[model.boundary.block[k].index()].push(k));
-        let mut supported = vec![Vec::new(); model.covers.block_count()];
-        for support in &model.supports {
-            let star = |k: usize| model.covers.star_position[support.covers[k]] * support.weights[k];
-            supported[support.block.index()].push(star(0) + star(1) + star(2));
-        }
-        let of = |block: BlockId| Outline::new(model, block, &edges[block.index()], &supported[block.index()]);
-        Self { blocks: model.covers.blocks().map(of).collect() }
-    }
-
-    /// A block that can break.
-    pub fn of(&self, block: BlockId) -> Option<&Outline> {
-        self.blocks[block.index()].as_ref()
-    }
-
-    /// All blocks that can break.
-    pub fn all(&self) -> impl Iterator<Item = &Outline> {
-        self.blocks.iter().flatten()
-    }
+/// A place on an outline, where a section may end: an edge, and the share of the way along it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// Place of the edge in the outline.
+    pub edge: usize,
+    /// Share of the way.
+    pub along: f64,
 }
 
 impl Outline {
     /// That of a block which is one loop without a crack, and all of whose rock can break.
-    fn new(model: &Model, block: BlockId, edges: &[EdgeId], supports: &[Point]) -> Option<Self> {
+    pub fn new(model: &Model, block: BlockId, edges: &[EdgeId], supports: &[Point]) -> Option<Self> {
         let boundary = &model.boundary;
         let loops = edges.iter().filter(|&&k| boundary.after(k) <= k).count();
         if loops != 1 || edges.iter().any(|&k| boundary.partial[k]) {
@@ -103,8 +71,6 @@ impl Outline {
             extent: (high - low).norm(),
             edges: edges.to_vec(),
             points,
-            chords: OnceLock::new(),
-            cores: Cores::default(),
         })
     }
 
@@ -184,14 +150,5 @@ impl Outline {
         let own = normal(at.edge);
         let before = (at.along == 0.0).then(|| normal((at.edge + n - 1) % n)).filter(|other| own.dot(other) < 0.999);
         [Some(own), before].into_iter().flatten()
-    }
-
-    /// Sections along the normals of its faces, found once.
-    pub fn chords(&self, model: &Model) -> &[Chord] {
-        self.chords.get_or_init(|| {
-            let starts = self.starts(model);
-            let ways = starts.iter().flat_map(|&start| self.normals(start).map(move |way| (start, way)));
-            ways.filter_map(|(start, way)| Chord::along(model, self, start, way)).collect()
-        })
     }
 }

@@ -8,10 +8,11 @@ use crate::mechanics::{Resultants, RockStrength, SectionCut, SectionFailure};
 use crate::state::{Model, State, Workspace, WorstSection};
 use crate::step::Regime;
 
-use super::chord::{Chord, End, end_at, place};
+use super::blocks::{BreakableBlock, BreakableBlocks};
+use super::chord::{Chord, end_at, place};
 use super::cores::principal;
 use super::forces::{BlockForce, BlockForces};
-use super::outline::{Outline, Outlines};
+use super::outline::{End, Outline};
 
 /// Share of its strength below which no section of a block needs to be looked at.
 const IDLE: f64 = 0.3;
@@ -70,7 +71,7 @@ pub struct Search<'a> {
     /// Buffers of the step.
     pub workspace: &'a Workspace,
     /// Blocks that can break.
-    pub outlines: &'a Outlines,
+    pub breakable: &'a BreakableBlocks,
     /// How the stage treats gravity.
     pub regime: Regime,
 }
@@ -84,9 +85,8 @@ impl Search<'_> {
         let factor = self.state.drive.strength_factor_now(watched.time);
         let blocks = watched.blocks.par_iter().zip(&watched.internal).zip(&forces);
         let found = blocks.filter_map(|((&block, internal), points)| {
-            let outline = self.outlines.of(block)?;
-            let block = LoadedBlock::new(self, outline, (internal, points), factor)?;
-            Some((outline.block, block.worst(all_wanted)))
+            let loaded = LoadedBlock::new(self, self.breakable.of(block)?, (internal, points), factor)?;
+            Some((block, loaded.worst(all_wanted)))
         });
         found.collect()
     }
@@ -96,6 +96,7 @@ impl Search<'_> {
 struct LoadedBlock<'a> {
     model: &'a Model,
     state: &'a State,
+    block: &'a BreakableBlock,
     outline: &'a Outline,
     strength: RockStrength,
     internal: &'a [Vector],
@@ -115,11 +116,12 @@ struct LoadedBlock<'a> {
 impl<'a> LoadedBlock<'a> {
     fn new(
         search: &Search<'a>,
-        outline: &'a Outline,
+        block: &'a BreakableBlock,
         (internal, points): (&'a [Vector], &'a [BlockForce]),
         factor: f64,
     ) -> Option<Self> {
         let Search { model, state, workspace, .. } = *search;
+        let outline = &block.outline;
         let rock = model.breaking.as_ref()?.rocks[outline.rock as usize].as_ref()?;
         let RockStrength { tension, cohesion, friction, characteristic } = rock.strength;
         let [tension, cohesion, friction] = [tension, cohesion, friction].map(|value| value * factor);
@@ -140,7 +142,7 @@ impl<'a> LoadedBlock<'a> {
         let places = CoverId::range(covers).map(place).collect();
         let turn = turn(model, state, outline.block);
         let splits = rock.cores;
-        Some(Self { model, state, outline, strength, internal, points, on_covers, places, held, turn, splits })
+        Some(Self { model, state, block, outline, strength, internal, points, on_covers, places, held, turn, splits })
     }
 
     /// Its section that is nearest to its strength.
@@ -158,7 +160,7 @@ impl<'a> LoadedBlock<'a> {
         if !all_wanted && worst.1.is_some() {
             return worst.0;
         }
-        for chord in self.outline.chords(self.model) {
+        for chord in self.block.chords(self.model) {
             worst = self.worse(worst, Some(chord));
         }
         let (stress, axis) = self.mean_stress();
@@ -178,7 +180,7 @@ impl<'a> LoadedBlock<'a> {
         if !self.splits {
             return worst;
         }
-        let Some((tension, chord)) = self.outline.cores.worst(self.model, self.state, self.outline, self.turn) else {
+        let Some((tension, chord)) = self.block.cores.worst(self.model, self.state, self.outline, self.turn) else {
             return worst;
         };
         let share = tension / self.strength.tension;
@@ -273,8 +275,9 @@ impl<'a> LoadedBlock<'a> {
             let mut right = vec![1.0; self.places.len()];
             chord.covers().for_each(|(k, share)| right[k] -= share);
             let covers = right.iter().enumerate().map(|(k, share)| (*share, self.places[k], self.on_covers[k]));
-            SectionCut { ends: [ends[1], ends[0]] }
-                .resultants(covers, self.points.iter().map(|f| self.part(chord, f, 1)))
+            let points = self.points.iter().map(|force| self.part(chord, force, 1));
+            let seen_from_there = SectionCut { ends: [ends[1], ends[0]] }.resultants(covers, points);
+            Resultants { moment: -seen_from_there.moment, ..seen_from_there }
         } else {
             let covers = chord.covers().map(|(k, share)| (share, self.places[k], self.on_covers[k]));
             SectionCut { ends }.resultants(covers, self.points.iter().map(|f| self.part(chord, f, 0)))

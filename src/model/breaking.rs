@@ -1,7 +1,7 @@
 //! Rock that breaks: the worst section of a model is looked for as it moves, and cuts it when it has its strength.
 
 use crate::cover::BlockId;
-use crate::fracture::{Outlines, Search, Watched, watch};
+use crate::fracture::{BreakableBlocks, Search, Watched, watch};
 use crate::recut;
 use crate::state::{Breaking, Cut, Event, EventKind, WorstSection};
 use crate::step::{self, Failure, Regime, StepError, StepReport, Wanted};
@@ -24,7 +24,7 @@ impl Simulation {
         if self.workspace.selection.kept_gaps.is_some() {
             return None;
         }
-        let outlines = self.outlines.get_or_init(|| Outlines::new(self.model()));
+        let breakable = self.breakable.get_or_init(|| BreakableBlocks::new(self.model()));
         let is_static = matches!(self.regime, Regime::Static { .. });
         if is_static && !(wanted == Wanted::Report && self.rest_due()) {
             return None;
@@ -37,8 +37,7 @@ impl Simulation {
             is_static || all || share >= NEAR[1] || searches && share >= NEAR[0]
         };
         let can_move = |block: BlockId| !self.workspace.mass_matrix.fixed[block] && !state.removed[block];
-        let blocks = outlines.all().map(|outline| outline.block);
-        let blocks: Vec<BlockId> = blocks.filter(|&block| can_move(block) && is_due(block)).collect();
+        let blocks: Vec<BlockId> = breakable.all().filter(|&block| can_move(block) && is_due(block)).collect();
         (!blocks.is_empty()).then(|| watch(self.model(), state, blocks, self.time()))
     }
 
@@ -48,7 +47,7 @@ impl Simulation {
     /// The rock has more parts than the case allows.
     pub(super) fn break_rock(&mut self, watched: &Watched, made: &mut StepReport) -> Result<(), StepError> {
         let model = &self.built.model;
-        let (Some(breaking), Some(outlines)) = (&model.breaking, self.outlines.get()) else { return Ok(()) };
+        let (Some(breaking), Some(breakable)) = (&model.breaking, self.breakable.get()) else { return Ok(()) };
         let is_static = matches!(self.regime, Regime::Static { .. });
         let rests = made.unbalanced <= BALANCED[0] && made.kinetic_of_most <= BALANCED[1] * made.ledger.strain;
         if is_static && !rests {
@@ -57,7 +56,7 @@ impl Simulation {
         // The state is that of the end of the step.
         let all_wanted = is_static || (self.state.step - 1).is_multiple_of(breaking.every);
         let (state, workspace, regime) = (&self.state, &self.workspace, self.regime);
-        let found = Search { model, state, workspace, outlines, regime }.worst(watched, all_wanted);
+        let found = Search { model, state, workspace, breakable, regime }.worst(watched, all_wanted);
         let mut failed: Vec<(f64, u32)> = Vec::new();
         for (block, section) in found {
             if section.share >= 1.0 && !section.barred {
@@ -81,10 +80,11 @@ impl Simulation {
         let Some(block) = self.block_labelled(label) else { return Ok(false) };
         let (section, stage) = (self.state.worst_sections[block], self.state.stage);
         self.check_parts(block, &section)?;
-        let rock = self.outlines.get().and_then(|outlines| outlines.of(block)).map_or(0, |outline| outline.rock);
+        let rock = self.breakable.get().and_then(|breakable| breakable.of(block)).map_or(0, |of| of.outline.rock);
         let WorstSection { share, ends, carries, failure, .. } = section;
         let (step, time) = (self.state.step, self.time());
-        let cut = Cut { ends, stage, step, time, block: label, rock, share, carried: carries, failure };
+        let part = self.model().labels.iter().max().map_or(0, |most| most + 1);
+        let cut = Cut { ends, stage, step, time, block: label, part, rock, share, carried: carries, failure };
         let cuts = [&self.state.cuts[..], &[cut]].concat();
         let ground = self.ground(stage as usize, &cuts).ok();
         let parts = ground.as_ref().map(|ground| ground.built.model.covers.block_count());
@@ -96,16 +96,18 @@ impl Simulation {
             self.state.worst_sections[block].barred = true;
             return Ok(false);
         }
-        let before = self.energy();
+        let before = self.energy_of_rock_and_springs();
         let masses = &self.workspace.mass_matrix;
         let now = (&self.built.model, &self.state);
-        self.state = recut::carry_break(&lineage, now, masses, &ground.model, time);
+        self.state = recut::carry_break(&lineage, now, masses, &ground.model, &cut);
         self.state.cuts = cuts;
         self.stand_on(ground);
         step::prepare(&self.built.model, &self.state, &mut self.workspace);
-        self.state.ledger.fracture += before - self.energy();
-        let other = self.model().labels.iter().copied().max().unwrap_or(label);
-        self.state.events.list.push(Event { kind: EventKind::Cut, subject: label, time, other, depth: 0.0 });
+        let after = self.energy_of_rock_and_springs();
+        self.state.ledger.baseline += after[0] - before[0];
+        self.state.ledger.fracture += before.iter().sum::<f64>() - after.iter().sum::<f64>();
+        let event = Event { kind: EventKind::Cut, subject: label, time, other: part, depth: 0.0 };
+        self.state.events.list.push(event);
         self.looks.forget();
         Ok(true)
     }
@@ -125,11 +127,12 @@ impl Simulation {
         Err(StepError { block: self.model().labels[block], position, time: self.time(), failure })
     }
 
-    /// Energy (J/m) of rock and springs.
-    fn energy(&self) -> f64 {
+    /// Energy (J/m) of the rock, and that of contacts and supports.
+    fn energy_of_rock_and_springs(&self) -> [f64; 2] {
         let energies = self.energies();
         let (state, ahead) = self.look_ahead();
-        energies.kinetic + energies.strain + energies.potential + step::stored(self.model(), &state, &ahead)
+        let rock = energies.kinetic + energies.strain + energies.potential;
+        [rock, step::stored(self.model(), &state, &ahead)]
     }
 
     /// Sections of rock that have broken so far.

@@ -12,7 +12,7 @@ use crate::contact::{
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
-    Counters, Course, Cut, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
+    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
     WorstSection,
 };
 
@@ -150,8 +150,8 @@ impl Simulation {
             neighbours,
             support_force: _,
             support_rest: _,
-            worst_sections,
-            cuts,
+            worst_sections: _,
+            cuts: _,
             fix_active: _,
             removed: _,
             laws,
@@ -165,15 +165,11 @@ impl Simulation {
             counters,
         } = state;
         self.check_clock(state)?;
-        let built = self.check_cuts(state.stage, cuts)?;
+        let built = self.check_breaking(state)?;
         let model = &built.model;
-        check_worst(model, worst_sections)?;
         self.check_motion(model, state)?;
         check_contacts(model, contacts)?;
-        let is_soft = laws.iter().any(|law| law.softening.is_some());
-        length("bonds", bonds.len(), if is_soft { contacts.len() } else { 0 })?;
-        length("sections", sections.len(), model.sections.list.len())?;
-        check_bonds(bonds, laws.len(), sections)?;
+        check_bonds(model, (bonds, contacts.len()), laws, sections)?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
@@ -187,8 +183,9 @@ impl Simulation {
         check_counters(counters)
     }
 
-    /// Checks sections that have broken, and builds the model with them.
-    fn check_cuts(&self, stage: u32, cuts: &[Cut]) -> Result<Arc<Built>, Unfit> {
+    /// Checks sections that have broken, builds the model with them, and checks its worst sections.
+    fn check_breaking(&self, state: &State) -> Result<Arc<Built>, Unfit> {
+        let State { stage, cuts, .. } = state;
         if let Some(breaking) = &self.model().breaking {
             at_most("the number of cuts", cuts.len() as u64, breaking.cuts_max.min(breaking.parts_max) as u64)?;
         } else {
@@ -199,18 +196,19 @@ impl Simulation {
             if self.case().rocks.values().nth(cut.rock.into()).is_none_or(|rock| rock.fracture.is_none()) {
                 unfit(format!("cuts[{k}].rock"), cut.rock, "a rock that breaks".to_owned())?;
             }
-            at_most(format_args!("cuts[{k}].stage"), cut.stage.into(), stage.into())?;
+            at_most(format_args!("cuts[{k}].stage"), cut.stage.into(), (*stage).into())?;
             at_most(format_args!("cuts[{k}].step"), cut.step, COUNT)?;
             between(format_args!("cuts[{k}].time"), cut.time, 0.0, TIME)?;
             check_section(&format!("cuts[{k}]"), cut.share, (cut.ends, &cut.carried))?;
         }
         in_order("cuts", "by step", cuts.is_sorted_by_key(|cut| (cut.stage, cut.step)))?;
-        let ground = self.ground(stage as usize, cuts);
-        ground.map(|ground| ground.built).map_err(|error| Unfit {
+        let ground = self.ground(*stage as usize, cuts).map_err(|error| Unfit {
             what: "the model with its cuts".to_owned(),
             value: error.to_string(),
             limit: "one that can be built".to_owned(),
-        })
+        })?;
+        check_worst(&ground.built.model, &state.worst_sections)?;
+        Ok(ground.built)
     }
 
     fn check_clock(&self, state: &State) -> Fit {
@@ -489,14 +487,22 @@ fn check_laws(found: &[JointLaw], mut own: Vec<JointLaw>) -> Fit {
     same("laws", found, &own)
 }
 
-fn check_bonds(bonds: &[BondHistory], laws: usize, sections: &[Option<Release>]) -> Fit {
+fn check_bonds(
+    model: &Model,
+    (bonds, contacts): (&[BondHistory], usize),
+    laws: &[JointLaw],
+    sections: &[Option<Release>],
+) -> Fit {
+    let is_soft = laws.iter().any(|law| law.softening.is_some());
+    length("bonds", bonds.len(), if is_soft { contacts } else { 0 })?;
+    length("sections", sections.len(), model.sections.list.len())?;
     for (k, &Release { carried, left }) in sections.iter().enumerate().filter_map(|(k, s)| Some((k, s.as_ref()?))) {
         between(format_args!("sections[{k}].left"), left, 0.0, 1.0)?;
         carried.iter().try_for_each(|&s| between(format_args!("sections[{k}].carried"), s, 0.0, FORCE))?;
     }
     for (k, &BondHistory { damage, lengths, law, section }) in bonds.iter().enumerate() {
         between(format_args!("bonds[{k}].damage"), damage, 0.0, 1.0)?;
-        index(format_args!("bonds[{k}].law"), law.number(), laws)?;
+        index(format_args!("bonds[{k}].law"), law.number(), laws.len())?;
         if let Some(section) = section {
             index(format_args!("bonds[{k}].section"), section.number(), sections.len())?;
         }

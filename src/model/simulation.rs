@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::contact::{DetectionRule, SideId, VertexEdge};
 use crate::cover::BlockId;
-use crate::fracture::Outlines;
+use crate::fracture::BreakableBlocks;
 use crate::geometry::Vector;
 use crate::recut;
 use crate::state::{Drive, Event, EventKind, Ledger, Model, State, Workspace};
@@ -36,7 +36,7 @@ pub struct Simulation {
     /// Models of rock that has broken.
     pub(super) broken: Broken,
     /// Blocks of the model that can break, once sections of them are looked for.
-    pub(super) outlines: OnceLock<Outlines>,
+    pub(super) breakable: OnceLock<BreakableBlocks>,
     /// Looks of callers since the model last changed.
     pub(super) looks: Looks,
     /// The blocks as the audit of overlaps cuts them, once it has had to compare two.
@@ -78,7 +78,7 @@ impl Simulation {
             workspace: Workspace::default(),
             regime: Regime::Dynamic { damping: 0.0 },
             broken: Broken::default(),
-            outlines: OnceLock::new(),
+            breakable: OnceLock::new(),
             looks: Looks::default(),
             audit: OnceLock::new(),
         };
@@ -211,7 +211,7 @@ impl Simulation {
             let Workspace { serial, seconds, .. } = self.workspace;
             self.workspace = Workspace { serial, seconds, ..Workspace::default() };
             self.audit = OnceLock::new();
-            self.outlines = OnceLock::new();
+            self.breakable = OnceLock::new();
             self.built = built;
         }
     }

@@ -5,4 +5,5 @@ pub use crate::contact::{
     Boundary, ContactHistory, DetectionRule, EdgeId, LawId, NodeId, Resistance, SideId, VertexEdge,
 };
 pub use crate::cover::{BlockId, BoundaryPiece, CoverId, ElementId, Outlines};
-pub use crate::state::{Model, Seconds, Workspace};
+pub use crate::mechanics::{Resultants, SectionFailure};
+pub use crate::state::{Cut, Model, Seconds, Workspace, WorstSection};

@@ -4,7 +4,7 @@ use crate::contact::{BoltState, Release};
 use crate::cover::{BlockId, CoverId};
 use crate::geometry::Vector;
 use crate::mechanics::MassMatrix;
-use crate::state::{Drive, Events, Inputs, Model, State, WorstSection};
+use crate::state::{Cut, Drive, Events, Inputs, Model, State, WorstSection};
 use crate::step;
 
 use super::contacts::carry_contacts;
@@ -12,7 +12,18 @@ use super::lineage::Lineage;
 
 /// The state after a cut of a model between two stages, whose blocks were free by `masses`. Displacements and
 /// velocities of all points stay, but for a spin that keeps the angular momentum of a block that has come apart.
-pub fn carry(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatrix, new: &Model) -> State {
+pub fn carry(lineage: &Lineage, before: (&Model, &State), masses: &MassMatrix, new: &Model) -> State {
+    carry_over(lineage, before, masses, new, None)
+}
+
+/// The state after a cut of a stage or a section that has broken.
+fn carry_over(
+    lineage: &Lineage,
+    (old, was): (&Model, &State),
+    masses: &MassMatrix,
+    new: &Model,
+    broken: Option<&Cut>,
+) -> State {
     let parents = &lineage.parents;
     let mut state = was.clone();
     state.displacement = part_of(&was.displacement, parents.covers.iter().map(|c| c.index()));
@@ -36,14 +47,20 @@ pub fn carry(lineage: &Lineage, (old, was): (&Model, &State), masses: &MassMatri
     carry_inputs(lineage, &mut state.drive);
     carry_bolts(lineage, (old, was), new, &mut state);
     keep_spin(lineage, (old, was), masses, new, &mut state);
-    carry_contacts(lineage, (old, was), new, &mut state);
+    carry_contacts(lineage, (old, was), new, broken, &mut state);
     state
 }
 
 /// The state after a section of rock has broken in the middle of a stage.
-pub fn carry_break(lineage: &Lineage, before: (&Model, &State), masses: &MassMatrix, new: &Model, time: f64) -> State {
+pub fn carry_break(
+    lineage: &Lineage,
+    before: (&Model, &State),
+    masses: &MassMatrix,
+    new: &Model,
+    broken: &Cut,
+) -> State {
     let (old, was) = before;
-    let mut state = carry(lineage, before, masses, new);
+    let mut state = carry_over(lineage, before, masses, new, Some(broken));
     if !was.stage_displacement.is_empty() {
         let covers = || lineage.parents.covers.iter();
         state.stage_displacement = part_of(&was.stage_displacement, covers().map(|c| c.index()));
@@ -51,7 +68,7 @@ pub fn carry_break(lineage: &Lineage, before: (&Model, &State), masses: &MassMat
         let share = |(k, parent): (usize, &CoverId)| was.stage_force[parent.index()] * mass(k, parent.index());
         state.stage_force = covers().enumerate().map(share).collect();
     }
-    release(lineage, new, &mut state, time);
+    release(lineage, new, &mut state, broken.time);
     state
 }
 

@@ -9,7 +9,8 @@ use crate::contact::{
 };
 use crate::cover::BlockId;
 use crate::geometry::{Point, TraceId, Vector, segment};
-use crate::state::{Model, State};
+use crate::mechanics::Resultants;
+use crate::state::{Cut, Model, State};
 use crate::step::{self, Regime};
 
 use super::lineage::Lineage;
@@ -36,15 +37,23 @@ struct Loaded {
     shares: Option<Face>,
 }
 
-/// Carries contacts and bonds over into a state whose displacements are there.
-pub fn carry_contacts(lineage: &Lineage, (old, was): (&Model, &State), new: &Model, state: &mut State) {
+/// Carries contacts and bonds over into a state whose displacements are there, after a cut of a stage or a section that
+/// has broken.
+pub fn carry_contacts(
+    lineage: &Lineage,
+    (old, was): (&Model, &State),
+    new: &Model,
+    broken: Option<&Cut>,
+    state: &mut State,
+) {
     state.contacts.clear();
     state.bonds.clear();
-    if was.contacts.is_empty() {
+    if was.step == 0 {
+        // The first step finds them in rock that has not moved.
         return;
     }
     let carry = Carry { lineage, old, was, new, before: Before::new(old, was) };
-    let softens = !was.bonds.is_empty();
+    let softens = state.laws.iter().any(|law| law.softening.is_some());
     let mut seeds = carry.kept();
     seeds.extend(carry.touching(state));
     seeds.sort_by_key(|(history, _)| key(history));
@@ -58,6 +67,9 @@ pub fn carry_contacts(lineage: &Lineage, (old, was): (&Model, &State), new: &Mod
     carry.keep_sums(&mut loaded);
     for (contact, loaded) in loaded.iter_mut().filter(|(_, loaded)| loaded.shares.is_some()) {
         settle(contact, new, &mut loaded.history);
+    }
+    if let Some(broken) = broken {
+        carry.balance(broken, &mut loaded);
     }
     state.contacts = loaded.iter().map(|(_, loaded)| loaded.history).collect();
     if softens {
@@ -241,10 +253,50 @@ impl Carry<'_> {
 
     /// The bond of a contact on a face that the cut has made, which lets go with the section that has broken there.
     fn new_bond(&self, contact: &VertexEdge) -> BondHistory {
-        let section = self.new.sections.of(contact.history.edge);
+        let edges = [contact.history.edge].into_iter().chain(self.new.boundary.edges_about(contact.history.node));
+        let section = edges.filter_map(|edge| self.new.sections.of(edge)).find(|&section| self.is_new(section));
         let bond =
             |_| BondHistory { damage: 0.0, lengths: [contact.length, contact.bonded], law: contact.law, section };
         section.map_or_else(BondHistory::default, bond)
+    }
+
+    /// Whether the cut has made a section.
+    fn is_new(&self, section: SectionId) -> bool {
+        self.lineage.sections[section.index()].is_none()
+    }
+
+    /// Changes the forces on a section that has just broken, linearly along it, so that they are in balance with what
+    /// it has carried: the stress of single elements is not.
+    fn balance(&self, broken: &Cut, loaded: &mut [(VertexEdge, Loaded)]) {
+        let [from, to] = broken.ends;
+        let (middle, along) = ((from + to) * 0.5, (to - from).normalize());
+        let is_on = |loaded: &Loaded| loaded.bond.section.is_some_and(|section| self.is_new(section));
+        let place = |contact: &VertexEdge| (self.new.boundary.reference[contact.point] - middle).dot(&along);
+        let Resultants { normal, shear, moment } = broken.carried;
+        // Compression is positive in contacts, and their shear acts on nodes along their edges.
+        let (mut missing, mut lengths) = ([-normal, -shear, moment], [0.0; 3]);
+        for (contact, loaded) in loaded.iter().filter(|(_, loaded)| is_on(loaded)) {
+            let (length, at, history) = (contact.length, place(contact), &loaded.history);
+            missing[0] -= history.normal_force;
+            missing[1] -= history.shear_force;
+            missing[2] -= history.normal_force * at;
+            lengths = [lengths[0] + length, lengths[1] + length * at, lengths[2] + length * at * at];
+        }
+        let [all, first, second] = lengths;
+        let both = all * second - first * first;
+        if both <= 0.0 {
+            return;
+        }
+        let even = (missing[0] * second - missing[2] * first) / both;
+        let rising = (missing[2] * all - missing[0] * first) / both;
+        for (contact, loaded) in loaded.iter_mut().filter(|(_, loaded)| is_on(loaded)) {
+            let (length, at) = (contact.length, place(contact));
+            let history = &mut loaded.history;
+            history.normal_force += length * (even + rising * at);
+            history.shear_force += length * (missing[1] / all);
+            history.filtered_normal = history.normal_force.max(0.0);
+            settle(contact, self.new, history);
+        }
     }
 
     /// Mean stress (Pa) of the rock before the cut on both sides of a node, along the face.

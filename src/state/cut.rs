@@ -33,6 +33,8 @@ pub struct Cut {
     pub time: f64,
     /// Number of the block that it parted, as hosts see it.
     pub block: u32,
+    /// Number of the part that is new.
+    pub part: u32,
     /// Rock of the case whose strength it had.
     pub rock: u16,
     /// Share of its strength that it had.

@@ -58,11 +58,17 @@ fn note_broken(model: &Model, state: &mut State, time: f64) {
     }
     for (trace, (was, is)) in held.iter().zip(&holds).enumerate() {
         let soft = softens(state.law_switch[model.trace_law[trace]]);
-        if *was && !is && soft {
+        if *was && !is && soft && !is_crack(model, trace) {
             state.events.list.push(Event::of(EventKind::Broken, trace as u32, time));
         }
     }
     state.events.bonded = holds;
+}
+
+/// Whether rock has broken along a trace: its event is that of the cut.
+fn is_crack(model: &Model, trace: usize) -> bool {
+    let rocks = model.breaking.iter().flat_map(|breaking| breaking.rocks.iter().flatten());
+    rocks.into_iter().any(|rock| rock.law == model.trace_law[trace])
 }
 
 fn note_slipped(model: &Model, state: &mut State, time: f64) {

@@ -153,6 +153,9 @@ fn report(summary: &Summary, directory: &Path, quiet: bool) -> ExitCode {
     }
 }
 
+/// Blocks that have broken which are named.
+const BREAKS: usize = 5;
+
 fn table(summary: &Summary, directory: &Path) -> String {
     let mut lines = vec![String::new()];
     let mut row = |name: &str, value: String| lines.push(format!("{name:<20} {value}"));
@@ -164,6 +167,27 @@ fn table(summary: &Summary, directory: &Path) -> String {
         let outcome = stage.outcome();
         let end = if outcome == OVER { String::new() } else { format!(", {outcome}") };
         row(&format!("stage {}", stage.name), format!("{} s, {} steps{end}", rounded(stage.time), stage.steps));
+    }
+    for of in summary.breaks.iter().take(BREAKS) {
+        let [[x0, y0], [x1, y1]] = of.section.ends;
+        let value = format!(
+            "from ({x0:.2}, {y0:.2}) to ({x1:.2}, {y1:.2}) m after {} s, the section {}; block {} parts off",
+            rounded(of.time),
+            of.section.failure,
+            of.part
+        );
+        row(&format!("block {} broke", of.section.block), value);
+    }
+    if summary.breaks.len() > BREAKS {
+        row("", format!("and {} more blocks: see summary.json", summary.breaks.len() - BREAKS));
+    }
+    if let Some(worst) = summary.worst_sections.first() {
+        let [[x0, y0], [x1, y1]] = worst.ends;
+        let value = format!(
+            "block {}: from ({x0:.2}, {y0:.2}) to ({x1:.2}, {y1:.2}) m at {:.2} of the strength of the rock",
+            worst.block, worst.share
+        );
+        row("nearest to breaking", value);
     }
     let open_close = &summary.open_close;
     row(

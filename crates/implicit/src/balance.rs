@@ -2,7 +2,7 @@
 
 use enmm::geometry::Vector;
 use enmm::internals::contact::{Boundary, ContactSetting, Pair, VertexEdge};
-use enmm::internals::mechanics::{self, Deformation};
+use enmm::internals::mechanics::{Deformation, Forces};
 use enmm::internals::state::Workspace;
 
 use super::buffers::ImplicitBuffers;
@@ -123,12 +123,12 @@ impl ImplicitStep<'_> {
             }
             let force = contact.normal * contact.history.normal_force + contact.tangent() * contact.history.shear_force;
             let Pair { covers, weights, .. } = contact.pair(&self.model.boundary);
-            mechanics::spread(&covers[0], &weights[0], force, residual);
-            mechanics::spread(&covers[1], &weights[1], -force, residual);
+            residual.at_point(&covers[0], &weights[0], force);
+            residual.at_point(&covers[1], &weights[1], -force);
         }
         for row in &workspace.supports.rows {
             let support = &self.model.supports[row.support as usize];
-            mechanics::spread(&support.covers, &support.weights, support.direction * row.force, residual);
+            residual.at_point(&support.covers, &support.weights, support.direction * row.force);
         }
     }
 }

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 pub mod blocks;
+mod breaks;
 pub mod changes;
 pub mod film;
 mod folder;

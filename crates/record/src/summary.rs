@@ -13,6 +13,7 @@ use enmm::model::{EventKind, Ledger, Simulation, State, StepError};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
+use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::motion::{FailureOfStage, PermanentMotion};
 
@@ -92,6 +93,12 @@ pub struct Summary {
     pub broken_length: f64,
     /// Joints whose last bond has broken, as numbers of traces, in the order of time.
     pub broken_joints: Vec<u32>,
+    /// Blocks that have broken, in the order of time.
+    #[serde(skip_serializing_if = "<[BreakRecord]>::is_empty")]
+    pub breaks: Vec<BreakRecord>,
+    /// The blocks nearest to breaking, the worst first; empty of rock that does not break.
+    #[serde(skip_serializing_if = "<[SectionRecord]>::is_empty")]
+    pub worst_sections: Vec<SectionRecord>,
     /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
@@ -450,6 +457,8 @@ impl Summary {
             overlapping_pairs: state.events.overlapped.len(),
             broken_length: state.counters.broken,
             broken_joints: broken(state),
+            breaks: BreakRecord::all(simulation),
+            worst_sections: SectionRecord::worst(simulation),
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             trace_ends: TraceEndRecord::all(simulation.built()),

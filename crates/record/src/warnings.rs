@@ -54,6 +54,7 @@ impl Recorder {
     pub fn warn_of_stage(&mut self, simulation: &Simulation, converged: bool, restless: &[Restless]) -> io::Result<()> {
         self.warn_of_unsettled(simulation)?;
         self.warn_of_shaking(simulation)?;
+        self.warn_of_barred(simulation)?;
         let stage = simulation.stage();
         let name = &stage.name;
         if stage.kind == StageKind::Static && converged && !restless.is_empty() {
@@ -71,6 +72,25 @@ impl Recorder {
             self.warn(simulation, text)?;
         }
         Ok(())
+    }
+
+    /// Warns of blocks that would have broken where they could not be cut.
+    fn warn_of_barred(&mut self, simulation: &Simulation) -> io::Result<()> {
+        let (model, state) = (simulation.model(), simulation.state());
+        let barred = model.labels.iter().zip(&state.worst_sections).filter(|(_, worst)| worst.barred);
+        let blocks: Vec<String> = barred.map(|(label, _)| label.to_string()).collect();
+        if blocks.is_empty() {
+            return Ok(());
+        }
+        let name = &simulation.stage().name;
+        let text = format!(
+            "in stage {name:?} {} {} reached the strength of the rock where no cut can be made, as at a support, and \
+             {} held: refine mesh.size or move the support",
+            if blocks.len() == 1 { "block" } else { "blocks" },
+            blocks.join(", "),
+            if blocks.len() == 1 { "was" } else { "were" },
+        );
+        self.warn(simulation, text)
     }
 
     /// Warns of a stage in which contacts often end a step with other forces than their joint laws give.

@@ -112,6 +112,9 @@ pub fn build(
     let state = initial_state(case, &model, &positions)?;
     warnings.extend(rock::overstressed(case, &model));
     warnings.extend(rock::coarse(case));
+    let (note, warning) = rock::breakable(&model);
+    notes.extend(note);
+    warnings.extend(warning);
     warnings.extend(bolt_warnings);
     warnings.extend(bonds::warnings(case, &model, &joints));
     warnings.extend(quiet::warning(case));
@@ -158,7 +161,6 @@ fn model(
     let (fixities, supports, fixed_supports, quiets) = held(case, &positions, &rocks, &element_rock)?;
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, &keep_nodes(outlines, before, tolerance), &DetectionRule::default());
-    tell(BuildStage::Start);
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
     let (loads, ports, water) = on_faces(case, &positions, &boundary, &quiets.quiets)?;
     let model = Model {
@@ -172,7 +174,7 @@ fn model(
         strengths: case.rocks.values().map(rock::yielding).collect(),
         boundary,
         mass_matrix: MassMatrix::free(&covers, &rocks, &element_rock),
-        laws: joint_laws(case, joints, stiffness_over(1.0, case, &rocks))?,
+        laws: joint_laws(case, joints, &rocks)?,
         trace_law: joints.traces.iter().map(|t| t.1).collect(),
         default_law: joints.default_law,
         sections: Sections::default(),
@@ -250,6 +252,10 @@ fn stiffness_over(length: f64, case: &Case, rocks: &[Elasticity]) -> f64 {
     case.solver.contact_stiffness * rocks.iter().map(Elasticity::confined_modulus).fold(0.0, f64::max) / length
 }
 
+/// Length over the mesh size of rock that is as soft as a crack: springs that take over what rock has carried store
+/// energy that it had not.
+const CRACK_LENGTH: f64 = 0.1;
+
 /// Explicit steps in the default implicit one.
 const IMPLICIT_STEPS: f64 = 20.0;
 
@@ -279,13 +285,15 @@ fn two_digits_below(value: f64) -> f64 {
 }
 
 /// The laws of the case by name; a continuum, which needs none, has one without strength.
-fn joint_laws(case: &Case, joints: &Joints, stiffness: f64) -> Result<Vec<JointLaw>, Invalid> {
+fn joint_laws(case: &Case, joints: &Joints, rocks: &[Elasticity]) -> Result<Vec<JointLaw>, Invalid> {
+    let stiffness = stiffness_over(1.0, case, rocks);
     let without = case.joint_laws.is_empty().then(|| case::JointLaw::frictional(0.0));
     let laws = case.joint_laws.values().chain(&without);
     let mut laws: Vec<JointLaw> = laws.map(|law| joint_law(law, stiffness, case.solver.shear_ratio)).collect();
     bonds::of_bridges(case, joints, &mut laws)?;
+    let of_cracks = stiffness_over(CRACK_LENGTH * case.mesh.size, case, rocks);
     laws.extend(rock::crack_laws(case).map(|law| {
-        let law = joint_law(&law, stiffness, case.solver.shear_ratio);
+        let law = joint_law(&law, of_cracks, case.solver.shear_ratio);
         JointLaw { softening: law.softening.or(Some(Softening::AT_ONCE)), ..law }
     }));
     Ok(laws)
@@ -437,9 +445,9 @@ fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(ElementId, Point)>,
     case.monitors.iter().enumerate().map(of).collect()
 }
 
-fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<State, Invalid> {
-    let covers = model.covers.cover_count();
-    let mut velocity = vec![Vector::zeros(); covers];
+/// Velocities (m/s) of the covers at the start.
+fn initial_velocity(case: &Case, model: &Model, positions: &Locator) -> Result<Vec<Vector>, Invalid> {
+    let mut velocity = vec![Vector::zeros(); model.covers.cover_count()];
     for (k, start) in case.initial_velocities.iter().enumerate() {
         let blocks = match start.block {
             Some(point) => {
@@ -456,6 +464,12 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
             }
         }
     }
+    Ok(velocity)
+}
+
+fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<State, Invalid> {
+    let covers = model.covers.cover_count();
+    let velocity = initial_velocity(case, model, positions)?;
     Ok(State {
         stage: 0,
         stage_start: 0.0,

@@ -1,7 +1,7 @@
 //! Which rock each element is made of, and the strength of rock.
 
 use crate::contact::LawId;
-use crate::cover::{Covers, ElementId};
+use crate::cover::{BlockId, Covers, ElementId};
 use crate::geometry::polygon;
 use crate::mechanics::{
     Averaging, Criterion, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, RockStrength, YieldingRock,
@@ -67,6 +67,23 @@ pub(super) fn breaking(case: &Case) -> Option<Breaking> {
         parts_max: parts_max as usize,
         cuts_max: cuts_max as usize,
     })
+}
+
+/// How many blocks can break, and a warning where none can.
+pub(super) fn breakable(model: &Model) -> (Option<String>, Option<String>) {
+    let Some(breaking) = &model.breaking else { return (None, None) };
+    let least = breaking.least_part;
+    let is_large = |&block: &BlockId| model.covers.block_area(block) >= 2.0 * least;
+    let (large, all) = (model.covers.blocks().filter(is_large).count(), model.covers.block_count());
+    if large == 0 {
+        let text = format!(
+            "no block can break: all are smaller than two parts of {least:.3e} m²; refine mesh.size, or lower \
+             fracture.least_part"
+        );
+        return (None, Some(text));
+    }
+    let note = format!("{large} of {all} blocks are large enough to break into parts of at least {least:.3e} m²");
+    (Some(note), None)
 }
 
 /// The law of the cracks of a rock, by its place in the case: those of all rocks that break come after all others.
