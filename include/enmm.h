@@ -244,6 +244,10 @@ enum enmm_event_kind
    * The last bond of a rock bridge broke, or of a joint with an energy of fracture; in the initial equilibrium, too.
    */
   ENMM_EVENT_BROKEN = 4,
+  /**
+   * A block broke in two: `subject` goes on, `other` is the number of the new part.
+   */
+  ENMM_EVENT_CUT = 5,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

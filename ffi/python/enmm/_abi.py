@@ -51,6 +51,8 @@ class EventKind(IntEnum):
     initial equilibrium, too, whose times are below 0."""
     BROKEN = 4
     """The last bond of a rock bridge broke, or of a joint with an energy of fracture; in the initial equilibrium, too."""
+    CUT = 5
+    """A block broke in two: `subject` goes on, `other` is the number of the new part."""
 
 
 class PortKind(IntEnum):
