@@ -2,6 +2,7 @@
 
 use crate::cover::BlockId;
 use crate::fracture::{BreakableBlocks, Search, Watched, watch};
+use crate::geometry::Vector;
 use crate::recut;
 use crate::state::{Breaking, Cut, Event, EventKind, WorstSection};
 use crate::step::{self, Failure, Regime, StepError, StepReport, Wanted};
@@ -133,6 +134,19 @@ impl Simulation {
         let (state, ahead) = self.look_ahead();
         let rock = energies.kinetic + energies.strain + energies.potential;
         [rock, step::stored(self.model(), &state, &ahead)]
+    }
+
+    /// A field on the covers of the model that had so many breaks, on those of the model now.
+    pub fn after_breaks(&self, known: usize, field: &[Vector]) -> Vec<Vector> {
+        let mut field = field.to_vec();
+        for count in known..self.state.cuts.len() {
+            let cuts = &self.state.cuts[..=count];
+            let ground = self.ground(cuts[count].stage as usize, cuts).ok();
+            if let Some(lineage) = ground.and_then(|ground| ground.lineage) {
+                field = lineage.parents.covers.iter().map(|parent| field[parent.index()]).collect();
+            }
+        }
+        field
     }
 
     /// Sections of rock that have broken so far.

@@ -69,8 +69,9 @@ impl SectionRecord {
         let labels = &simulation.model().labels;
         let sections = &simulation.state().worst_sections;
         // Of blocks far from it there is a bound alone.
-        let known = labels.iter().zip(sections).filter(|(_, worst)| worst.ends[0] != worst.ends[1]);
-        let mut records: Vec<Self> = known.map(|(&label, worst)| Self::of(label, worst)).collect();
+        let there = labels.iter().zip(sections).zip(&simulation.state().removed).filter(|(_, removed)| !**removed);
+        let known = there.filter(|((_, worst), _)| worst.ends[0] != worst.ends[1]);
+        let mut records: Vec<Self> = known.map(|((&label, worst), _)| Self::of(label, worst)).collect();
         records.sort_by(|a, b| b.share.total_cmp(&a.share).then(a.block.cmp(&b.block)));
         records.truncate(NAMED);
         records

@@ -75,6 +75,8 @@ pub struct Recorder {
     frames: Option<PvdWriter>,
     pub(crate) film: Film,
     pub(crate) joints: Joints,
+    /// Sections of rock that have broken, as far as they are known here.
+    breaks: usize,
     plan: Plan,
     row: Option<RowStart>,
     clock: Instant,
@@ -99,6 +101,7 @@ impl Recorder {
             frames,
             film,
             joints: Joints::of(simulation),
+            breaks: simulation.cuts().len(),
             plan: Plan::of(simulation),
             row: None,
             clock,
@@ -237,6 +240,20 @@ impl Recorder {
         let Some(start) = self.row.take() else { return Ok(false) };
         self.write_row(simulation, report, &start)?;
         Ok(true)
+    }
+
+    /// Takes over what is known by covers and joints into a model in which blocks have broken since the last look, or
+    /// into that of an earlier state whose progress is there.
+    pub fn follow_breaks(&mut self, simulation: &Simulation) {
+        let breaks = simulation.cuts().len();
+        let known = std::mem::replace(&mut self.breaks, breaks);
+        if breaks == known {
+            return;
+        }
+        self.joints = Joints::of(simulation);
+        if !self.progress.started.is_empty() {
+            self.progress.started = simulation.after_breaks(known, &self.progress.started);
+        }
     }
 
     fn row_start(&self, simulation: &Simulation) -> RowStart {

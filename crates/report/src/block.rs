@@ -41,6 +41,17 @@ pub struct Shape {
 /// # Errors
 /// The first number that is not finite, with its block.
 pub fn outlines(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+    let numbers: Vec<String> = head.block_numbers.iter().map(|number| number.name.clone()).collect();
+    expect(
+        "numbers of the motion of a block",
+        numbers.iter().zip(MOTION).filter(|(a, b)| a == b).count(),
+        MOTION.len(),
+    )?;
+    shape_of(numbers, outlines)
+}
+
+/// The same of a film whose blocks have these numbers.
+fn shape_of(numbers: Vec<String>, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
     let points = || outlines.iter().flat_map(|block| block.loops.iter().flatten());
     for block in outlines {
         let numbers = [block.area, block.mass].into_iter().chain(block.centroid);
@@ -63,12 +74,6 @@ pub fn outlines(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), F
         bytes.extend((block.loops.len() as u32).to_le_bytes());
         block.loops.iter().for_each(|points| bytes.extend((points.len() as u32).to_le_bytes()));
     }
-    let numbers: Vec<String> = head.block_numbers.iter().map(|number| number.name.clone()).collect();
-    expect(
-        "numbers of the motion of a block",
-        numbers.iter().zip(MOTION).filter(|(a, b)| a == b).count(),
-        MOTION.len(),
-    )?;
     let mut shape = Shape { origin, size, ends: Vec::new(), arms: Vec::new(), numbers };
     shape.push_places(outlines, &mut bytes);
     Ok((bytes, shape))
@@ -82,6 +87,14 @@ fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> ([f64; 2], [f64; 2]
 }
 
 impl Shape {
+    /// Bytes and shape of other outlines of the same film.
+    ///
+    /// # Errors
+    /// As [`outlines`].
+    pub fn changed(&self, outlines: &[Outline]) -> Result<(Vec<u8>, Self), FilmError> {
+        shape_of(self.numbers.clone(), outlines)
+    }
+
     /// Appends centroids and corners relative to the origin in single precision.
     fn push_places(&mut self, outlines: &[Outline], bytes: &mut Vec<u8>) {
         let origin = self.origin;

@@ -9,7 +9,7 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
 /// First bytes of a film; the last of them counts the versions of the format.
-pub const MAGIC: [u8; 8] = *b"enmmfil4";
+pub const MAGIC: [u8; 8] = *b"enmmfil5";
 
 /// Bytes before the body of a chunk.
 pub const HEADER: usize = 16;

@@ -39,6 +39,8 @@ struct Held {
     /// These rows, once a chunk that is kept back has them.
     rows: Option<Vec<Vec<f64>>>,
     stage: Option<u32>,
+    /// Outlines before, once others are kept back.
+    shape: Option<Shape>,
 }
 
 impl FilmWriter {
@@ -91,6 +93,21 @@ impl FilmWriter {
         Ok(())
     }
 
+    /// Appends other outlines, which blocks have from a time (s) on: of frames that follow.
+    ///
+    /// # Errors
+    /// As [`FilmWriter::create`].
+    pub fn outlines(&mut self, time: f64, outlines: &[Outline]) -> Result<(), FilmError> {
+        let (bytes, shape) = self.shape.changed(outlines)?;
+        self.flush()?;
+        self.append(Kind::Outlines, time, &bytes)?;
+        let before = std::mem::replace(&mut self.shape, shape);
+        if let Some(held) = &mut self.held {
+            held.shape.get_or_insert(before);
+        }
+        Ok(())
+    }
+
     /// Takes a row of the histories: one number per column, the time (s) first.
     ///
     /// # Errors
@@ -117,7 +134,8 @@ impl FilmWriter {
 
     /// Keeps back what follows until [`FilmWriter::release`] writes it or [`FilmWriter::discard`] forgets it.
     pub fn hold(&mut self) {
-        self.held = Some(Held { bytes: Vec::new(), before: self.rows.len(), rows: None, stage: self.stage });
+        self.held =
+            Some(Held { bytes: Vec::new(), before: self.rows.len(), rows: None, stage: self.stage, shape: None });
     }
 
     /// Bytes that are kept back.
@@ -138,6 +156,9 @@ impl FilmWriter {
     pub fn discard(&mut self) {
         let Some(held) = self.held.take() else { return };
         self.stage = held.stage;
+        if let Some(shape) = held.shape {
+            self.shape = shape;
+        }
         match held.rows {
             Some(rows) => self.rows = rows,
             None => self.rows.truncate(held.before),
@@ -207,7 +228,7 @@ fn json(value: &impl serde::Serialize, path: &Path) -> Result<Vec<u8>, FilmError
     serde_json::to_vec(value).map_err(io::Error::from).map_err(FilmError::at(path))
 }
 
-/// Takes frames, rows and notes later than a time (s) out of a film; returns its file, and the stage of its last frame.
+/// Takes frames, rows, notes and outlines later than a time (s) out of a film; returns its file, and the stage of its last frame.
 fn shorten(path: &Path, until: f64) -> Result<(File, Option<u32>), FilmError> {
     let (shortened, file) = Unfinished::beside(path).map_err(FilmError::at(path))?;
     let stage = keep(path, file, until)?;
@@ -224,9 +245,11 @@ fn keep(from: &Path, file: File, until: f64) -> Result<Option<u32>, FilmError> {
     let mut chunks = Chunks::new(BufReader::new(film)).map_err(no_film)?;
     let mut kept = BufWriter::new(file);
     kept.write_all(&MAGIC).map_err(&unwritten)?;
-    let mut last: Option<Chunk> = None;
+    let (mut last, mut has_outlines): (Option<Chunk>, bool) = (None, false);
     while let Some(chunk) = chunks.next().map_err(no_film)? {
-        let begins = matches!(chunk.kind, Kind::Head | Kind::Outlines);
+        // Those of the start, whose time is no time of the model.
+        let begins =
+            chunk.kind == Kind::Head || chunk.kind == Kind::Outlines && !std::mem::replace(&mut has_outlines, true);
         if begins || chunk.time <= until {
             kept.write_all(&chunk.bytes).map_err(&unwritten)?;
             if chunk.kind == Kind::Frame {

@@ -30,7 +30,7 @@ function chartsOfBlock(film, k) {
   if (k === null) return [];
   const time = film.frames.map((frame) => frame.time),
     block = film.shape.blocks[k];
-  const over = (of) => film.frames.map(of);
+  const over = (of) => film.frames.map((frame) => of(frame, placesIn(film.shape, frame.shape)[k]));
   const chart = (name, unit, parts) => ({
     name: `Block ${block.id}: ${name} (${unit})`,
     unit,
@@ -38,28 +38,28 @@ function chartsOfBlock(film, k) {
   });
   const charts = [
     chart("displacement", "m", [
-      ["ux", (f) => f.displacement_x[k]],
-      ["uy", (f) => f.displacement_y[k]],
+      ["ux", (f, k) => f.displacement_x[k]],
+      ["uy", (f, k) => f.displacement_y[k]],
     ]),
   ];
   if (film.has("velocity")) {
     charts.push(
       chart("velocity", "m/s", [
-        ["vx", (f) => f.velocity_x[k]],
-        ["vy", (f) => f.velocity_y[k]],
+        ["vx", (f, k) => f.velocity_x[k]],
+        ["vy", (f, k) => f.velocity_y[k]],
       ]),
     );
   }
   if (film.has("stress")) {
     charts.push(
       chart("stress", "Pa", [
-        ["σxx", (f) => f.mean_stress_xx[k]],
-        ["σyy", (f) => f.mean_stress_yy[k]],
-        ["σxy", (f) => f.mean_stress_xy[k]],
+        ["σxx", (f, k) => f.mean_stress_xx[k]],
+        ["σyy", (f, k) => f.mean_stress_yy[k]],
+        ["σxy", (f, k) => f.mean_stress_xy[k]],
       ]),
     );
   }
-  for (const { name, meaning, unit } of film.others()) charts.push(chart(meaning, unit, [[name, (f) => f[name][k]]]));
+  for (const { name, meaning, unit } of film.others()) charts.push(chart(meaning, unit, [[name, (f, k) => f[name][k]]]));
   return charts;
 }
 

@@ -134,7 +134,8 @@ function colourOf({ name, meaning, unit }) {
 function rangeOf(film, colour, frames, base) {
   const values = [];
   for (const frame of frames) {
-    for (let k = 0; k < film.shape.count; k++) if (!frame.removed[k]) values.push(colour.value(frame, k, base));
+    const from = film.under(base, frame.shape);
+    for (let k = 0; k < frame.shape.count; k++) if (!frame.removed[k]) values.push(colour.value(frame, k, from));
   }
   if (!values.length) return [0, 1];
   const sorted = Float64Array.from(values).sort(),

@@ -1,6 +1,6 @@
 // The film: bytes to typed arrays. `format.md` of the crate has the layout.
 
-const MAGIC = "enmmfil4";
+const MAGIC = "enmmfil5";
 const CHUNK_HEADER = 16;
 // Vectors and tensors among the numbers of blocks; the page shows all others one by one.
 const PARTS = {
@@ -153,12 +153,59 @@ function readOutlines(reader) {
   shape.x = reader.planes(corners, 4);
   shape.y = reader.planes(corners, 4);
   shape.real = realCorners(shape);
+  shape.places = new Map(shape.blocks.map((block, k) => [block.id, k]));
   return shape;
+}
+
+// Whether a block holds a place in the reference configuration (m, from the origin).
+function blockHolds({ x, y }, block, atX, atY) {
+  let inside = false;
+  for (const [first, end] of block.loops) {
+    for (let c = first, before = end - 1; c < end; before = c++) {
+      const spans = y[c] > atY !== y[before] > atY;
+      if (spans && atX < x[c] + ((atY - y[c]) / (y[before] - y[c])) * (x[before] - x[c])) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+// Places in the blocks of one shape of the blocks of another: those of the same number, and of a part that is not there
+// yet the block that it is a part of.
+function placesIn(shape, other) {
+  shape.placesIn ??= new Map();
+  if (!shape.placesIn.has(other)) {
+    const placed = shape.blocks.map(({ id }, k) => {
+      const same = other.places.get(id);
+      if (same !== undefined) return same;
+      const [x, y] = [shape.centreX[k], shape.centreY[k]];
+      return Math.max(0, other.blocks.findIndex((block) => blockHolds(other, block, x, y)));
+    });
+    shape.placesIn.set(other, placed);
+  }
+  return shape.placesIn.get(other);
+}
+
+// A frame of other blocks as one of the blocks of a shape: a part moves with the block that it is a part of.
+function frameOf(frame, shape, numbers) {
+  const parents = placesIn(shape, frame.shape);
+  const taken = (values) => values.constructor.from(parents, (parent) => values[parent]);
+  const seen = { ...frame, shape, removed: taken(frame.removed), edges: null, wet: null, quantum: 1 };
+  for (const { name } of numbers) seen[name] = taken(frame[name]);
+  parents.forEach((parent, k) => {
+    const armX = shape.centreX[k] - frame.shape.centreX[parent],
+      armY = shape.centreY[k] - frame.shape.centreY[parent],
+      sine = Math.sin(frame.rotation[parent]),
+      less = Math.cos(frame.rotation[parent]) - 1;
+    seen.displacement_x[k] += armX * less - armY * sine;
+    seen.displacement_y[k] += armX * sine + armY * less;
+  });
+  seen.restX = seen.restY = new Int8Array(shape.corners);
+  return seen;
 }
 
 // `before` is the frame before, whose supports still hold unless others follow.
 function readFrame(reader, time, shape, { monitors, bolts, block_numbers }, before) {
-  const frame = { time, stage: reader.u32() };
+  const frame = { time, stage: reader.u32(), shape };
   const withEdges = reader.u8() === 1;
   const withSupports = reader.u8() === 1;
   reader.take(2);
@@ -204,7 +251,9 @@ function slim(integers) {
 class Film {
   constructor() {
     this.head = null;
+    // Blocks of the moment that is shown: others where some have broken meanwhile.
     this.shape = null;
+    this.lastShape = null;
     this.frames = [];
     this.rows = { time: [], columns: [] };
     this.notes = [];
@@ -260,8 +309,8 @@ class Film {
     if (kind === "HEAD") {
       this.head = json();
       this.rows.columns = this.head.columns.map(() => []);
-    } else if (kind === "OUTL") this.shape = readOutlines(reader);
-    else if (kind === "FRAM") this.frames.push(readFrame(reader, time, this.shape, this.head, this.frames.at(-1)));
+    } else if (kind === "OUTL") this.lastShape = this.shape = readOutlines(reader);
+    else if (kind === "FRAM") this.frames.push(readFrame(reader, time, this.lastShape, this.head, this.frames.at(-1)));
     else if (kind === "ROWS") this.takeRows(reader);
     else if (kind === "NOTE") this.notes.push({ time, ...json() });
   }
@@ -297,6 +346,13 @@ class Film {
     return low;
   }
 
+  // A frame as one of the blocks of a shape, by default of those that are shown.
+  under(frame, shape = this.shape) {
+    if (!frame || frame.shape === shape) return frame;
+    if (frame.seen?.shape !== shape) frame.seen = frameOf(frame, shape, this.head.block_numbers);
+    return frame.seen;
+  }
+
   // Whether frames have a vector or tensor of blocks.
   has(whole) {
     return PARTS[whole].every((part) => this.head.block_numbers.some(({ name }) => name === part));
@@ -311,8 +367,9 @@ class Film {
   // frame to another.
   displace(from, to, part, outX, outY) {
     const { blocks, centreX, centreY, x, y } = this.shape,
-      a = this.frames[from],
-      b = this.frames[to],
+      a = this.under(this.frames[from]),
+      // Nothing moves on to a moment at which other blocks are there.
+      b = this.frames[to].shape === this.frames[from].shape ? this.under(this.frames[to]) : a,
       rest = 1 - part;
     for (let k = 0; k < blocks.length; k++) {
       const ux = a.displacement_x[k] * rest + b.displacement_x[k] * part,

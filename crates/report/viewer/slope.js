@@ -10,18 +10,22 @@ class Slope {
     this.film = film;
     this.pen = canvas.getContext("2d");
     this.camera = { x: 0, y: 0, scale: 1 };
-    const corners = film.shape.corners;
-    this.x = new Float32Array(corners);
-    this.y = new Float32Array(corners);
-    this.baseX = new Float32Array(corners);
-    this.baseY = new Float32Array(corners);
+    this.makeRoom();
     this.fitted = true;
+  }
+
+  // Arrays for the corners of the blocks that are shown.
+  makeRoom() {
+    const corners = this.film.shape.corners;
+    for (const name of ["x", "y", "baseX", "baseY"]) this[name] = new Float32Array(corners);
   }
 
   // Puts every corner where it is drawn. `base` is a frame from which displacements count, or null.
   pose(moment, magnification, base) {
-    const { x, y, film } = this,
+    const { film } = this,
       shape = film.shape;
+    if (this.x.length !== shape.corners) this.makeRoom();
+    const { x, y } = this;
     this.magnification = magnification;
     film.displace(moment.from, moment.to, moment.part, x, y);
     if (base !== null) film.displace(base, base, 0, this.baseX, this.baseY);

@@ -20,7 +20,6 @@ class Viewer {
   }
 
   open() {
-    this.places = new Map(this.film.shape.blocks.map((block, k) => [block.id, k]));
     this.buildColours();
     this.buildSpeeds();
     this.listen();
@@ -38,8 +37,7 @@ class Viewer {
       { head } = film;
     document.title = `${head.title || head.case_file} – enmm ${head.command}`;
     by("title").textContent = head.title || head.case_file;
-    by("subtitle").textContent =
-      `enmm ${head.command}, version ${head.version}, ${fileName(head)}, ${counted(film.shape.count, "block")}, ${counted(film.frames.length, "frame")}`;
+    by("subtitle").textContent = this.subtitle();
     const end = film.of("end").at(-1);
     by("status").textContent = end
       ? end.status === "finished"
@@ -271,6 +269,20 @@ class Viewer {
     });
   }
 
+  // Shows other blocks where some have broken; a block that is chosen stays so by its number, or as its whole.
+  showShape(shape) {
+    const { film, choice } = this;
+    if (film.shape === shape) return;
+    if (choice.block !== null) choice.block = placesIn(film.shape, shape)[choice.block];
+    film.shape = shape;
+    by("subtitle").textContent = this.subtitle();
+  }
+
+  subtitle() {
+    const { head, shape, frames } = this.film;
+    return `enmm ${head.command}, version ${head.version}, ${fileName(head)}, ${counted(shape.count, "block")}, ${counted(frames.length, "frame")}`;
+  }
+
   draw() {
     const { film, player, slope, settings } = this;
     if (!film.frames.length) return;
@@ -279,12 +291,13 @@ class Viewer {
       base = this.baseFrame();
     if (settings.sinceStage && base !== this.ranged && this.colour.ramp) this.range();
     const frame = film.frames[moment.from];
+    this.showShape(frame.shape);
     slope.pose(moment, settings.magnification, base);
     this.monitors = this.monitorsNow(moment, base);
     const marks = film
       .of("marked")
       .filter((_, k) => this.marks[k])
-      .map(({ blocks }) => blocks.map((id) => this.places.get(id)).filter((k) => k !== undefined));
+      .map(({ blocks }) => blocks.map((id) => film.shape.places.get(id)).filter((k) => k !== undefined));
     const { magnification, structures } = settings,
       bolts = structures ? boltsNow(film, moment, base, magnification) : null;
     const over = { joints: this.colour.key === "joint", marks, monitors: this.monitors, bolts, ...this.choice };
@@ -301,7 +314,7 @@ class Viewer {
         film.shape.blocks[k].fixed ? theme.line : BLOCK_FILLS[film.shape.blocks[k].id % BLOCK_FILLS.length];
     const steps = RAMPS[colour.ramp],
       logarithmic = this.settings.logarithmic && colour.logarithmic,
-      from = film.frames[base];
+      from = film.under(film.frames[base]);
     return (k) => steps[stepOf(colour.value(frame, k, from), this.limits, logarithmic)];
   }
 

@@ -37,6 +37,8 @@ pub struct Film {
     numbers: Vec<fn(&BlockState) -> f64>,
     /// Boundary point of each corner, blocks in order, the outer loop of each first.
     corners: Vec<EdgeId>,
+    /// Sections of rock that had broken when the outlines were written; none when they are to be written anew.
+    breaks: Option<usize>,
 }
 
 /// Opening of a film beside the case and its model.
@@ -76,7 +78,10 @@ impl Film {
             Some(until) => FilmWriter::resume(&path, &head, &outlines, until),
             None => FilmWriter::create(&path, &head, &outlines),
         };
-        Ok(Self { writer: writer.map_err(refused)?, path, page: directory.join(PAGE), numbers, corners })
+        // A film that goes on may end with frames from before the last break.
+        let can_have_older = until.is_some() && simulation.model().breaking.is_some();
+        let breaks = (!can_have_older).then(|| simulation.cuts().len());
+        Ok(Self { writer: writer.map_err(refused)?, path, page: directory.join(PAGE), numbers, corners, breaks })
     }
 
     /// Appends the model as it is now.
@@ -93,6 +98,7 @@ impl Film {
     /// As [`Film::open`].
     pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         let simulation = &*simulation.cut_ahead();
+        self.follow_breaks(simulation, time)?;
         let displacement = |&point: &EdgeId| {
             let sample = simulation.model().boundary.sample(point, &simulation.state().displacement);
             [sample.x, sample.y]
@@ -115,6 +121,17 @@ impl Film {
                 structures: Structures { wet: &wet, ..beside.structures() },
             })
             .map_err(refused)
+    }
+
+    /// Appends the outlines of the blocks when some have broken since the last ones.
+    fn follow_breaks(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
+        let breaks = Some(simulation.cuts().len());
+        if self.breaks != breaks {
+            let (outlines, corners) = outlines(simulation);
+            self.writer.outlines(time, &outlines).map_err(refused)?;
+            (self.corners, self.breaks) = (corners, breaks);
+        }
+        Ok(())
     }
 
     /// Appends a frame in which every block has a rigid motion: displacement of its centroid (m) and rotation (rad).
@@ -219,6 +236,9 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn cut(&mut self, until: f64) -> io::Result<()> {
+        if self.breaks != Some(0) {
+            self.breaks = None;
+        }
         self.writer.cut(until).map_err(refused)
     }
 

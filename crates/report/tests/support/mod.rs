@@ -207,7 +207,7 @@ pub type Chunk = (String, f64, Vec<u8>);
 
 /// All chunks, read by what `format.md` says alone.
 pub fn chunks(film: &[u8]) -> Vec<Chunk> {
-    assert_eq!(&film[..8], b"enmmfil4");
+    assert_eq!(&film[..8], b"enmmfil5");
     let (mut rest, mut chunks) = (&film[8..], Vec::new());
     while !rest.is_empty() {
         let kind = String::from_utf8(rest[..4].to_vec()).unwrap();

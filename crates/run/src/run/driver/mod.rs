@@ -194,6 +194,7 @@ impl<'a> Driver<'a> {
         let known = self.simulation.state().events.list.len();
         let made = self.concurrency.advance(&mut self.simulation, wanted);
         let report = made.map_err(|error| Ok(StageEnd::Failed(error)))?;
+        self.recorder.follow_breaks(&self.simulation);
         self.recorder.warn_of_overlaps(&self.simulation, known).map_err(unwritten)?;
         self.tell_warnings();
         if !wanted {
@@ -254,6 +255,7 @@ impl<'a> Driver<'a> {
     fn fail(&mut self, error: &StepError) -> Result<Summary, RunError> {
         self.simulation.return_to(&self.good.state);
         self.recorder.progress = self.good.progress.clone();
+        self.recorder.follow_breaks(&self.simulation);
         self.close(RunStatus::Failed, Some(error))
     }
 
