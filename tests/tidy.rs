@@ -17,7 +17,7 @@ const ROOMS: [(&str, usize); 11] = [
     ("step", 3400),
     ("fracture", 1100),
     ("recut", 1150),
-    ("model", 6300),
+    ("model", 6500),
     ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;

@@ -228,7 +228,8 @@ fn json(value: &impl serde::Serialize, path: &Path) -> Result<Vec<u8>, FilmError
     serde_json::to_vec(value).map_err(io::Error::from).map_err(FilmError::at(path))
 }
 
-/// Takes frames, rows, notes and outlines later than a time (s) out of a film; returns its file, and the stage of its last frame.
+/// Takes frames, rows, notes and outlines later than a time (s) out of a film; returns its file, and the stage of its
+/// last frame.
 fn shorten(path: &Path, until: f64) -> Result<(File, Option<u32>), FilmError> {
     let (shortened, file) = Unfinished::beside(path).map_err(FilmError::at(path))?;
     let stage = keep(path, file, until)?;
@@ -248,8 +249,8 @@ fn keep(from: &Path, file: File, until: f64) -> Result<Option<u32>, FilmError> {
     let (mut last, mut has_outlines): (Option<Chunk>, bool) = (None, false);
     while let Some(chunk) = chunks.next().map_err(no_film)? {
         // Those of the start, whose time is no time of the model.
-        let begins =
-            chunk.kind == Kind::Head || chunk.kind == Kind::Outlines && !std::mem::replace(&mut has_outlines, true);
+        let is_first = chunk.kind == Kind::Outlines && !std::mem::replace(&mut has_outlines, true);
+        let begins = chunk.kind == Kind::Head || is_first;
         if begins || chunk.time <= until {
             kept.write_all(&chunk.bytes).map_err(&unwritten)?;
             if chunk.kind == Kind::Frame {
