@@ -10,8 +10,8 @@ fn unknown_key_names_the_nearest_known_key() {
         "young = 5e10",
         "yung = 5e10",
         "LINE: rock.granite.yung: unknown key \"yung\", did you mean `young`? Known keys: blocks, cohesion, \
-         density, dilation_deg, friction_deg, hoek_brown, plane, poisson, region, tension, young; rename or remove \
-         it",
+         density, dilation_deg, fracture, friction_deg, hoek_brown, plane, poisson, region, tension, young; rename or \
+         remove it",
     );
 }
 
@@ -21,9 +21,9 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mesh]",
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, bridge, \
-         cut, domain, ensemble, fix, fmu, free_field, gravity, in_situ, initial_velocity, joint, joint_law, joint_set, \
-         law_region, layers, load, mesh, monitor, output, port, quiet, random, random_correlation, report, rock, \
-         section, solver, stage, tessellation, title, transform, water; rename or remove it",
+         cut, domain, ensemble, fix, fmu, fracture, free_field, gravity, in_situ, initial_velocity, joint, joint_law, \
+         joint_set, law_region, layers, load, mesh, monitor, output, port, quiet, random, random_correlation, report, \
+         rock, section, solver, stage, tessellation, title, transform, water; rename or remove it",
     );
 }
 
