@@ -4,7 +4,7 @@
 use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{EventKind, Simulation, State, StepReport};
 
-use crate::common::{run_stage, simulation, step};
+use crate::common::{root, run_stage, simulation, step};
 
 const G: f64 = 9.81;
 
@@ -317,4 +317,24 @@ fn rock_that_holds_moves_as_rock_that_cannot_break() {
     runs.iter_mut().for_each(|run| step(run, 300));
     let motion = |run: &Simulation| (run.state().displacement.clone(), run.state().velocity.clone());
     assert_eq!(motion(&runs[0]), motion(&runs[1]));
+}
+
+/// The overhang of the examples: 3ρgL²/t of the weight at its root, which breaks it when it is dug at once.
+#[test]
+fn the_overhang_of_the_examples_breaks_at_its_root() {
+    let path = root().join("examples/breaking/overhang.toml");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let slow = text.replace("kind = \"dynamic\"\nduration = 0.8\ndamping = 0.02", "kind = \"static\"\nduration = 5");
+    let mut dug = [simulation(&text), simulation(&slow)];
+    for overhang in &mut dug {
+        run_stage(overhang);
+        assert!(overhang.next_stage().unwrap_or_else(|e| panic!("{e}")));
+    }
+    let [blasted, slow] = &mut dug;
+    step(blasted, 200);
+    let ends = blasted.cuts().iter().flat_map(|cut| cut.ends);
+    assert!(blasted.cuts().len() == 1 && ends.into_iter().all(|end| (end.x - 13.0).abs() < 1e-9));
+    run_stage(slow);
+    let share = 3.0 * 2600.0 * G * 25.0 / 4.0 / 0.85e6;
+    assert!(slow.cuts().is_empty() && (worst(slow).0 / share - 1.0).abs() < 1e-3);
 }
