@@ -4,7 +4,7 @@
 use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{EventKind, Simulation, State, StepReport};
 
-use crate::common::{root, run_stage, simulation, step};
+use crate::common::{refusal, root, run_stage, simulation, step};
 
 const G: f64 = 9.81;
 
@@ -337,4 +337,25 @@ fn the_overhang_of_the_examples_breaks_at_its_root() {
     run_stage(slow);
     let share = 3.0 * 2600.0 * G * 25.0 / 4.0 / 0.85e6;
     assert!(slow.cuts().is_empty() && (worst(slow).0 / share - 1.0).abs() < 1e-3);
+}
+
+/// What cannot break is refused by name, with the remedy.
+#[test]
+fn strengths_that_make_no_sense_are_refused() {
+    let text = overhang_text(0.5, 0.0, 1e6, AT_REST);
+    let yields = text.replace("poisson = 0.25\n", "poisson = 0.25\ncohesion = 1e6\n");
+    for (text, expected) in [
+        (
+            text.replace("cohesion = 50e6", "cohesion = 5e5"),
+            "tension: is 1e6 Pa, must be at most cohesion/tan(friction_deg)",
+        ),
+        (yields, "rock.rock.fracture: is for rock that is elastic until it breaks"),
+        (text.clone() + "[solver]\nintegrator = \"implicit\"\n", "fracture: is for solver.integrator = \"explicit\""),
+    ] {
+        let error = refusal(&text);
+        assert!(error.contains(expected), "{error}");
+    }
+    let case = crate::common::case(&text);
+    let error = enmm::cosimulation::Cosimulation::new(case).err().expect("it is refused").to_string();
+    assert!(error.contains("rock.rock.fracture: is for `enmm run`"), "{error}");
 }

@@ -126,3 +126,31 @@ fn a_run_goes_on_from_a_state_after_a_cut_with_the_bits_of_one_that_was_never_st
         blocks.split(|&byte| byte == b'\n').filter_map(|line| line.split(|&b| b == b',').next()).collect();
     assert_eq!(labels, [&b"id"[..], b"0", b"1", b"2", b""]);
 }
+
+/// The overhang of the examples breaks in its second stage: a run that is stopped before, while the section lets go, or
+/// long after leaves what one does that was never stopped.
+#[test]
+fn a_run_in_which_a_block_breaks_goes_on_with_the_bits_of_one_that_was_never_stopped() {
+    let mut case = example("../breaking/overhang.toml");
+    case.stages[1].duration = 0.15;
+    case.output.pictures = Pictures::Usual(false);
+    let loaded = LoadedCase::of(case, "overhang.toml").expect("a case");
+    let whole = tempdir().expect("a folder");
+    let expected = run(&loaded, &options(&whole), &mut ()).expect("a run");
+    assert_eq!((expected.breaks.len(), expected.model.blocks), (1, 3));
+    let broke = (expected.breaks[0].time / expected.dt.internal).round() as u64;
+    let first = expected.stages[0].steps;
+    assert!(broke > first + 10, "{broke}");
+    for step in [broke - 5, broke + 5, broke + 300] {
+        let part = tempdir().expect("a folder");
+        let (checkpoint, raised) = (part.path().join("checkpoint.enmm"), AtomicBool::new(false));
+        let stop = RunOptions { interrupt: Some(&raised), ..options(&part) };
+        run(&loaded, &stop, &mut Stop { stage: 2, step, raised: &raised }).expect("a run");
+        let resumed = RunOptions { resume: Some(checkpoint), ..options(&part) };
+        let summary = run(&loaded, &resumed, &mut ()).expect("a run that goes on");
+        assert_eq!((&summary.breaks, summary.time, summary.steps), (&expected.breaks, expected.time, expected.steps));
+        for name in ["blocks.csv", "history.csv"] {
+            assert_eq!(file(part.path(), name), file(whole.path(), name), "{name}, stopped at {step}");
+        }
+    }
+}
