@@ -12,7 +12,7 @@ const ROOMS: [(&str, usize); 11] = [
     ("cover", 1300),
     ("rock", 1400),
     ("mechanics", 2900),
-    ("contact", 7650),
+    ("contact", 7800),
     ("state", 2200),
     ("step", 3400),
     ("fracture", 1100),

@@ -2,7 +2,7 @@
 //! of its stability, and reports of what it costs.
 
 pub use crate::contact::{
-    Boundary, ContactHistory, DetectionRule, EdgeId, LawId, NodeId, Resistance, SideId, VertexEdge,
+    Boundary, ContactHistory, DetectionRule, EdgeId, Facing, Facings, LawId, NodeId, Resistance, SideId, VertexEdge,
 };
 pub use crate::cover::{BlockId, BoundaryPiece, CoverId, ElementId, Outlines};
 pub use crate::mechanics::{Resultants, SectionFailure};
