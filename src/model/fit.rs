@@ -5,6 +5,8 @@ use enmm_case::keys::Plain;
 use std::fmt::Display;
 use std::sync::Arc;
 
+use enmm_seepage::DELTA;
+
 use crate::contact::{
     BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, JointLaw, Meeting, NeighbourList, Release,
     Roughness, Unloaded,
@@ -12,7 +14,7 @@ use crate::contact::{
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
-    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
+    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, Seepage, State,
     WorstSection,
 };
 
@@ -158,6 +160,7 @@ impl Simulation {
             law_switch: _,
             damping: _,
             water_density: _,
+            seepage,
             bolts: _,
             drive,
             events,
@@ -177,6 +180,7 @@ impl Simulation {
         check_neighbours(model, neighbours)?;
         check_found(model, found, contacts, neighbours)?;
         self.check_stages(model, state)?;
+        check_seepage(model, seepage.as_ref())?;
         check_drive(model, drive)?;
         check_events(model, events)?;
         check_ledger(ledger)?;
@@ -302,6 +306,25 @@ fn check_section(what: &str, share: f64, (ends, carries): ([Point; 2], &Resultan
     let Resultants { normal, shear, moment } = *carries;
     let of = [("normal", normal), ("shear", shear), ("moment", moment)];
     of.into_iter().try_for_each(|(field, value)| number(format_args!("{what}.{field}"), value, FORCE))
+}
+
+fn check_seepage(model: &Model, seepage: Option<&Seepage>) -> Fit {
+    let (net, seepage) = match (&model.flow, seepage) {
+        (Some(net), Some(seepage)) => (net, seepage),
+        (None, None) => return Ok(()),
+        (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
+        (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
+    };
+    let Seepage { unknowns, conducts, flooded, sums, residual } = seepage;
+    length("seepage.unknowns", unknowns.len(), net.places.len())?;
+    length("seepage.conducts", conducts.len(), net.pieces.len())?;
+    length("seepage.flooded", flooded.len(), model.covers.block_count())?;
+    length("seepage.sums", sums.len(), net.heads.len() + 2)?;
+    for (k, unknown) in unknowns.iter().enumerate() {
+        between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
+    }
+    numbers("seepage.sums", sums.as_flattened(), RATE)?;
+    number("seepage.residual", *residual, RATE)
 }
 
 fn check_drive(model: &Model, drive: &Drive) -> Fit {

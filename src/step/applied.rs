@@ -6,6 +6,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::{self, Forces, LoadAction, pressure};
 use crate::state::{Drive, Model, Port, State, Water};
 
+use super::joint_water::JointWater;
 use super::{Substep, quiet};
 
 /// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
@@ -32,6 +33,7 @@ fn pushes(model: &Model, state: &State) -> bool {
     let any_scalar = |values: &[f64]| values.iter().any(|v| *v != 0.0);
     model.loads.iter().any(|load| !matches!(load.action, LoadAction::Body(_)))
         || model.water.is_some()
+        || model.flow.is_some()
         || quiet::frozen(model, state).next().is_some()
         || [from, to].into_iter().any(|inputs| {
             any(&inputs.port_traction)
@@ -50,13 +52,17 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
     }
     let faces = Faces { model, state };
     let share = state.drive.share(t);
+    let level = state.drive.water_level(share);
+    let weight = state.water_density * state.drive.gravity(share).norm() * ramp;
     if let Some(water) = &model.water {
-        let level = state.drive.water_level(share);
-        let weight = state.water_density * state.drive.gravity(share).norm() * ramp;
         faces.push_water(water, level, weight, force);
         if model.strengths.iter().flatten().any(|strength| strength.is_porous) {
             push_pores(model, state, |at| weight * water.surfaces[state.stage as usize].depth(level, at), force);
         }
+    }
+    if let (Some(net), Some(seepage)) = (&model.flow, &state.seepage) {
+        let reservoir = model.water.as_ref().map(|water| (water, level));
+        JointWater { net, seepage, reservoir, weight }.push(&faces, force);
     }
     for (k, port) in model.ports.iter().enumerate() {
         let (traction, pressure) = state.drive.port(k, share);
@@ -98,9 +104,9 @@ fn push_pores(model: &Model, state: &State, pressure: impl Fn(Point) -> f64, for
 }
 
 /// Boundary edges at their current positions.
-struct Faces<'a> {
-    model: &'a Model,
-    state: &'a State,
+pub(super) struct Faces<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
 }
 
 impl Faces<'_> {
@@ -114,8 +120,7 @@ impl Faces<'_> {
             } else {
                 pressure::under_table(a, b, &surface.table, rise, weight)
             };
-            let sliver = self.model.boundary.sliver(edge).filter(|&sliver| self.model.is_porous(sliver));
-            self.spread(edge, sliver, forces, force);
+            self.spread(edge, self.porous_sliver(edge), forces, force);
         }
     }
 
@@ -136,8 +141,23 @@ impl Faces<'_> {
         }
     }
 
+    /// The sliver on which an edge lies, if it has pores.
+    pub fn porous_sliver(&self, edge: EdgeId) -> Option<ElementId> {
+        self.model.boundary.sliver(edge).filter(|&sliver| self.model.is_porous(sliver))
+    }
+
+    /// Block of an edge.
+    pub fn block(&self, edge: EdgeId) -> BlockId {
+        self.model.boundary.block[edge]
+    }
+
+    /// Whether the block of an edge has been dug out.
+    pub fn is_gone(&self, edge: EdgeId) -> bool {
+        self.state.removed[self.block(edge)]
+    }
+
     /// Current positions of both ends of an edge (m).
-    fn ends(&self, edge: EdgeId) -> [Point; 2] {
+    pub fn ends(&self, edge: EdgeId) -> [Point; 2] {
         let boundary = &self.model.boundary;
         let stars = &self.model.covers.star_position;
         [edge, boundary.after(edge)].map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement))
@@ -145,9 +165,15 @@ impl Faces<'_> {
 
     /// Spreads forces at both ends of an edge over their covers, or over those of its sliver, whose pores have a
     /// pressure that balances them.
-    fn spread(&self, edge: EdgeId, sliver: Option<ElementId>, forces: [Vector; 2], force: &mut (impl Forces + ?Sized)) {
+    pub fn spread(
+        &self,
+        edge: EdgeId,
+        sliver: Option<ElementId>,
+        forces: [Vector; 2],
+        force: &mut (impl Forces + ?Sized),
+    ) {
         let Model { boundary, covers, .. } = self.model;
-        if self.state.removed[boundary.block[edge]] {
+        if self.is_gone(edge) {
             return;
         }
         let ends = [edge, boundary.after(edge)].map(|k| match sliver {

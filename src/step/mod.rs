@@ -9,6 +9,7 @@ mod explicit;
 mod friction;
 mod guard;
 mod integrator;
+mod joint_water;
 mod prepare;
 mod quiet;
 mod records;
