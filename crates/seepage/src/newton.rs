@@ -81,6 +81,28 @@ impl Solver {
         false
     }
 
+    /// Takes one more step from a state in balance, and keeps it where it leaves all nodes on their branches and in a
+    /// better balance: what is allowed may add up over many nodes.
+    pub fn polish(&mut self, problem: &Problem, state: &mut State) {
+        let before = self.off_by(problem, state);
+        self.linearize(problem, state);
+        self.solve(problem);
+        let mut next = state.clone();
+        self.go(problem, &mut next, Crossing::Goes);
+        problem.imbalance(&next.u, &mut self.imbalance);
+        if next.wet == state.wet && self.off_by(problem, &next) <= before {
+            *state = next;
+        } else {
+            problem.imbalance(&state.u, &mut self.imbalance);
+        }
+    }
+
+    /// Sum of the imbalances of nodes (m²/s).
+    fn off_by(&self, problem: &Problem, state: &State) -> f64 {
+        let counts = |node: &usize| problem.unknown[*node] && !self.is_bound(problem, state, *node);
+        (0..state.u.len()).filter(counts).map(|node| self.imbalance.values[node].abs()).sum()
+    }
+
     /// Whether a node's unknown is at an end that water cannot pass: it runs off, or a pump has taken all.
     pub fn is_bound(&self, problem: &Problem, state: &State, node: usize) -> bool {
         let (value, (top, runs_off)) = (self.imbalance.values[node], problem.tops[node]);

@@ -21,17 +21,27 @@ const LENGTHS: [f64; 2] = [1e-3, 1e15];
 /// Solves after which the march ends.
 const SOLVES_MAX: u32 = 400;
 
-/// Steady flow in a net.
-pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition]) -> Result<Flow, Failure> {
+/// Steady flow in a net, from a start or from full.
+pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
     let (mut problem, full) = problem(net, conductance, conditions)?;
     let mut solver = Solver::of(net);
-    let mut state = State::of(full);
-    let start = state.clone();
+    let start = State::of(start.map_or_else(|| full.clone(), |start| within(&problem, &full, start)));
+    let mut state = start.clone();
     if !solver.run(&problem, &mut state, NEWTON) {
         let unsolved = solver.worst(&problem, &state);
         state = march(&mut problem, &mut solver, start).ok_or(Unsolved { solves: solver.solves, ..unsolved })?;
     }
+    solver.polish(&problem, &mut state);
     Ok(flow(&problem, &solver, state))
+}
+
+/// Unknowns (m) of a start, within the limits of each node; those without an equation as they are given.
+fn within(problem: &Problem, given: &[f64], start: &[f64]) -> Vec<f64> {
+    let of = |node: usize| match problem.unknown[node] {
+        true => start[node].min(problem.tops[node].0).max(-DELTA),
+        false => given[node],
+    };
+    (0..start.len()).map(of).collect()
 }
 
 /// Lets the full net drain in strides, each pulled back to its start, and tries Newton's method after each.
