@@ -10,11 +10,14 @@
 //!
 //! Results are serial sums in a fixed order without fused operations: they have the same bits on any machine.
 
+mod balance;
 mod error;
 pub mod law;
 mod lu;
 mod net;
+mod newton;
 mod pieces;
+mod problem;
 mod steady;
 
 pub use error::{Failure, Refused, Unsolved};

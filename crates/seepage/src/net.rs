@@ -133,7 +133,20 @@ impl Net {
     /// of 10¹⁰ in dense nets.
     pub fn steady(&self, conductance: &[f64], conditions: &[Condition]) -> Result<Flow, Failure> {
         self.check(conductance, conditions)?;
-        crate::steady::solve(self, conductance, conditions)
+        crate::steady::solve(self, conductance, conditions, None)
+    }
+
+    /// Steady flow as [`Net::steady`] gives it, but from unknowns `start` (m) of the nodes, as those of another flow,
+    /// in place of a full net. Water that moves is the same; a stagnant pool keeps the level that it starts with or
+    /// gets on the way. From dry it takes more solves.
+    ///
+    /// # Errors
+    /// Those of [`Net::steady`], and [`Refused`] for a start of a wrong length or with a value that is not finite.
+    pub fn steady_from(&self, conductance: &[f64], conditions: &[Condition], start: &[f64]) -> Result<Flow, Failure> {
+        self.check(conductance, conditions)?;
+        length("start", start.len(), self.heights.len())?;
+        finite("start", start)?;
+        crate::steady::solve(self, conductance, conditions, Some(start))
     }
 
     /// Lists of the right length with finite values, and none negative that must not be.

@@ -1,9 +1,162 @@
 //! Steady flow.
 
-use crate::error::{Failure, Unsolved};
+use crate::error::{Failure, Refused, Unsolved};
+use crate::law::{DELTA, pressure_head};
 use crate::net::{Condition, Flow, Net};
+use crate::newton::{Crossing, Plan, Solver};
+use crate::problem::{Hold, Problem, State};
 
-/// Steady flow in a net.
-pub fn solve(_net: &Net, _conductance: &[f64], _conditions: &[Condition]) -> Result<Flow, Failure> {
-    Err(Unsolved { node: 0, residual: 0.0, solves: 0 }.into())
+/// From the full net down.
+const NEWTON: Plan = Plan { steps: 30, crossing: Crossing::Empties, balances_from: 5 };
+/// One stride of the march.
+const STRIDE: Plan = Plan { steps: 20, crossing: Crossing::Bends, balances_from: 2 };
+/// A trial of Newton's method after a stride.
+const TRIAL: Plan = Plan { steps: 6, crossing: Crossing::Empties, balances_from: 2 };
+/// Length of the first stride: the pull of its start is the conductances at a node divided by it.
+const FIRST: f64 = 1e5;
+/// Factor of the lengths of strides, after one that has led somewhere; its inverse after one that has not.
+const LONGER: f64 = 8.0;
+/// Lengths within which strides make sense.
+const LENGTHS: [f64; 2] = [1e-3, 1e15];
+/// Solves after which the march ends.
+const SOLVES_MAX: u32 = 400;
+
+/// Steady flow in a net, from a start or from full.
+pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
+    let (mut problem, full) = problem(net, conductance, conditions)?;
+    let mut solver = Solver::of(net);
+    let start = State::of(start.map_or_else(|| full.clone(), |start| within(&problem, &full, start)));
+    let mut state = start.clone();
+    if !solver.run(&problem, &mut state, NEWTON) {
+        let unsolved = solver.worst(&problem, &state);
+        state = march(&mut problem, &mut solver, start).ok_or(Unsolved { solves: solver.solves, ..unsolved })?;
+    }
+    solver.polish(&problem, &mut state);
+    Ok(flow(&problem, &solver, state))
+}
+
+/// Unknowns (m) of a start, within the limits of each node; those without an equation as they are given.
+fn within(problem: &Problem, given: &[f64], start: &[f64]) -> Vec<f64> {
+    let of = |node: usize| match problem.unknown[node] {
+        true => start[node].min(problem.tops[node].0).max(-DELTA),
+        false => given[node],
+    };
+    (0..start.len()).map(of).collect()
+}
+
+/// Lets the full net drain in strides, each pulled back to its start, and tries Newton's method after each.
+fn march(problem: &mut Problem, solver: &mut Solver, mut state: State) -> Option<State> {
+    let mut length = FIRST;
+    while solver.solves < SOLVES_MAX && (LENGTHS[0]..LENGTHS[1]).contains(&length) {
+        let old = state.u.clone();
+        let mut next = state.clone();
+        problem.hold = Hold::Pull(old, 1.0 / length);
+        let arrived = solver.run(problem, &mut next, STRIDE);
+        problem.hold = Hold::Nothing;
+        if !arrived {
+            length /= LONGER;
+            continue;
+        }
+        length *= LONGER;
+        state = next;
+        let mut trial = state.clone();
+        if solver.run(problem, &mut trial, TRIAL) {
+            return Some(trial);
+        }
+    }
+    None
+}
+
+/// The equations of steady flow, and the state in which each piece of the net is full up to its highest water.
+fn problem<'a>(
+    net: &'a Net,
+    conductance: &'a [f64],
+    conditions: &[Condition],
+) -> Result<(Problem<'a>, Vec<f64>), Refused> {
+    let labels = net.pieces(conductance);
+    let waters = waters(net, &labels, conditions)?;
+    let mut problem = Problem::of(net, conductance, conditions);
+    let mut full = vec![-DELTA; labels.len()];
+    for (node, (&label, &height)) in labels.iter().zip(net.heights()).enumerate() {
+        let water = waters[label as usize];
+        if !water.is_open {
+            (problem.unknown[node], problem.sources[node]) = (false, 0.0);
+        }
+        let depth = water.level - height;
+        let (top, runs_off) = &mut problem.tops[node];
+        *top = if water.is_fed { *top } else { top.min(pressure_head(depth)) };
+        full[node] = match conditions[node] {
+            Condition::Free { .. } if problem.unknown[node] && depth > 0.0 => depth,
+            Condition::Rain { .. } if *runs_off && depth >= 0.0 => 0.0,
+            condition => held(condition, height).unwrap_or(-DELTA),
+        };
+    }
+    Ok((problem, full))
+}
+
+/// What gives water to a piece of a net.
+#[derive(Debug, Clone, Copy)]
+struct Water {
+    /// Highest head, rain or, where there is a source, node (m).
+    level: f64,
+    /// Whether there is a head, air or rain.
+    is_open: bool,
+    /// Whether there is a source, whose water may stand higher than any node.
+    is_fed: bool,
+}
+
+/// Waters of pieces, by label.
+fn waters(net: &Net, labels: &[u32], conditions: &[Condition]) -> Result<Vec<Water>, Refused> {
+    let mut waters = vec![Water { level: f64::NEG_INFINITY, is_open: false, is_fed: false }; labels.len()];
+    for ((&label, &height), condition) in labels.iter().zip(net.heights()).zip(conditions) {
+        let water = &mut waters[label as usize];
+        match *condition {
+            Condition::Held { head } if head >= height => water.level = water.level.max(head),
+            Condition::Rain { .. } => water.level = water.level.max(height),
+            Condition::Free { source } => water.is_fed |= source > 0.0,
+            _ => {}
+        }
+        water.is_open |= !matches!(condition, Condition::Free { .. });
+    }
+    for (node, (&label, condition)) in labels.iter().zip(conditions).enumerate() {
+        let water = &mut waters[label as usize];
+        if !water.is_open && matches!(condition, Condition::Free { source } if *source > 0.0) {
+            return Err(Refused::Enclosed { node });
+        }
+        if water.is_fed {
+            water.level = water.level.max(net.heights()[node]);
+        }
+    }
+    Ok(waters)
+}
+
+/// Unknown (m) of a node with a given one.
+pub fn held(condition: Condition, height: f64) -> Option<f64> {
+    match condition {
+        Condition::Held { head } if head >= height => Some(head - height),
+        Condition::Held { .. } | Condition::Air => Some(-DELTA),
+        Condition::Free { .. } | Condition::Rain { .. } => None,
+    }
+}
+
+/// The flow of a state, whose imbalances the solver has.
+pub fn flow(problem: &Problem, solver: &Solver, state: State) -> Flow {
+    let net = problem.net;
+    let down = |pipe: usize| problem.flow(pipe, &state.u);
+    let flow = (0..net.pipes().len()).map(|k| if net.pipes()[k] == net.ends[k] { down(k) } else { -down(k) });
+    let flow = flow.collect();
+    let nodes = state.u.len();
+    let (mut inflow, mut run_off) = (problem.sources.clone(), vec![0.0; nodes]);
+    for node in 0..nodes {
+        let is_bound = solver.is_bound(problem, &state, node);
+        if is_bound || !problem.unknown[node] {
+            inflow[node] += solver.imbalance.values[node];
+        }
+        if is_bound && problem.tops[node].1 {
+            run_off[node] = -solver.imbalance.values[node];
+        }
+    }
+    let through_flow = inflow.iter().filter(|&&inflow| inflow > 0.0).sum();
+    let residual = solver.worst(problem, &state).residual.abs();
+    Flow { u: state.u, flow, inflow, run_off, solves: solver.solves, residual, through_flow }
 }

@@ -1,0 +1,249 @@
+//! The equations of a net: imbalances of nodes and their slopes.
+
+use crate::law::{self, DELTA};
+use crate::net::{Condition, Net, Storage};
+
+/// Share of the sum of conductances at a node that holds it where no equation does.
+const HOLD: f64 = 1e-13;
+/// Greatest imbalance of a node that is in balance, over the greatest flow in a pipe.
+const BALANCE: f64 = 1e-12;
+/// Round-off of a head, over heads and drops.
+const ROUND_OFF: f64 = 4e-15;
+
+/// Unknowns of a net, and on which branch of its laws each node is: its water has pressure, or runs as a film.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// Unknowns (m).
+    pub u: Vec<f64>,
+    /// Whether slopes are those of a node with pressure.
+    pub wet: Vec<bool>,
+}
+
+impl State {
+    /// Of unknowns, each on its own branch.
+    pub fn of(u: Vec<f64>) -> Self {
+        let wet = u.iter().map(|&u| u > 0.0).collect();
+        Self { u, wet }
+    }
+}
+
+/// What holds nodes to an older state.
+#[derive(Debug)]
+pub enum Hold<'a> {
+    /// Nothing: the flow is steady.
+    Nothing,
+    /// A pull towards older unknowns (m), by a share of the conductances at each node; it has no meaning of its own.
+    Pull(Vec<f64>, f64),
+    /// Water stored since older unknowns (m), within a time (s).
+    Store(Storage<'a>, &'a [f64], f64),
+}
+
+/// The equations.
+#[derive(Debug)]
+pub struct Problem<'a> {
+    pub net: &'a Net,
+    pub conductance: &'a [f64],
+    /// Sum of the conductances at each node (m²/s per m).
+    pub sums: Vec<f64>,
+    /// Water given to each node (m²/s).
+    pub sources: Vec<f64>,
+    /// Whether each node has an equation; others keep their unknown.
+    pub unknown: Vec<bool>,
+    /// Greatest unknown that each node can have (m), and whether water runs off there.
+    pub tops: Vec<(f64, bool)>,
+    pub hold: Hold<'a>,
+}
+
+/// What a pipe, or a node's own equation, adds to imbalances.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// To those of the upper and the lower node (m²/s).
+    imbalance: [f64; 2],
+    /// Flow down the pipe (m²/s).
+    flow: f64,
+}
+
+/// Imbalance of each node, what flows out and is stored less what flows in (m²/s), and the greatest allowed.
+#[derive(Debug, Clone)]
+pub struct Imbalance {
+    pub values: Vec<f64>,
+    pub allowed: Vec<f64>,
+    /// What is allowed everywhere, apart from round-off.
+    pub least_allowed: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// Of steady flow, in a net all of whose pieces water reaches.
+    pub fn of(net: &'a Net, conductance: &'a [f64], conditions: &[Condition]) -> Self {
+        let mut sums = vec![0.0; conditions.len()];
+        for (&[a, b], &conducts) in net.ends.iter().zip(conductance) {
+            sums[a as usize] += conducts;
+            sums[b as usize] += conducts;
+        }
+        let source = |condition: &Condition| match *condition {
+            Condition::Free { source } => source,
+            Condition::Rain { rate } => rate,
+            Condition::Held { .. } | Condition::Air => 0.0,
+        };
+        let is_unknown = |condition: &Condition| matches!(condition, Condition::Free { .. } | Condition::Rain { .. });
+        let top = |condition: &Condition| match condition {
+            Condition::Rain { .. } => (0.0, true),
+            _ => (f64::INFINITY, false),
+        };
+        Self {
+            net,
+            conductance,
+            sums,
+            sources: conditions.iter().map(source).collect(),
+            unknown: conditions.iter().map(is_unknown).collect(),
+            tops: conditions.iter().map(top).collect(),
+            hold: Hold::Nothing,
+        }
+    }
+
+    /// Flow (m²/s) down each pipe.
+    pub fn flow(&self, pipe: usize, u: &[f64]) -> f64 {
+        let [a, b] = self.net.ends[pipe];
+        law::flow(self.conductance[pipe], self.net.drops[pipe], u[a as usize], u[b as usize])
+    }
+
+    /// Imbalances of all nodes, those without an equation too.
+    pub fn imbalance(&self, u: &[f64], out: &mut Imbalance) {
+        out.values.iter_mut().zip(&self.sources).for_each(|(value, source)| *value = -source);
+        out.allowed.fill(0.0);
+        let mut most = self.sources.iter().fold(0.0_f64, |most, source| most.max(source.abs()));
+        for (pipe, &[a, b]) in self.net.ends.iter().enumerate() {
+            let (a, b) = (a as usize, b as usize);
+            let part = self.part(pipe, [u[a], u[b]]);
+            most = most.max(part.flow.abs());
+            out.values[a] += part.imbalance[0];
+            out.values[b] += part.imbalance[1];
+            let [at_a, at_b] = self.round_off(pipe, [u[a], u[b]]);
+            out.allowed[a] += at_a;
+            out.allowed[b] += at_b;
+        }
+        if let Hold::Pull(old, share) = &self.hold {
+            for (node, value) in out.values.iter_mut().enumerate() {
+                *value += self.sums[node] * share * (u[node] - old[node]);
+            }
+        }
+        out.least_allowed = BALANCE * most;
+        out.allowed.iter_mut().for_each(|allowed| *allowed = ROUND_OFF * *allowed + out.least_allowed);
+    }
+
+    /// Imbalance of one node with an unknown of its own (m²/s), and its slope on a branch.
+    pub fn imbalance_of(&self, node: usize, own: f64, wet: bool, state: &State) -> (f64, f64) {
+        let (mut value, mut slope) = (-self.sources[node], 0.0);
+        for &pipe in self.net.pipes_of(node) {
+            let pipe = pipe as usize;
+            let [a, b] = self.net.ends[pipe].map(|end| end as usize);
+            let at = usize::from(b == node);
+            let (mut u, mut branch) = ([state.u[a], state.u[b]], [state.wet[a], state.wet[b]]);
+            (u[at], branch[at]) = (own, wet);
+            value += self.part(pipe, u).imbalance[at];
+            slope += self.slopes(pipe, u, branch)[at][at];
+        }
+        if let Hold::Pull(old, share) = &self.hold {
+            value += self.sums[node] * share * (own - old[node]);
+            slope += self.sums[node] * share;
+        }
+        (value, slope)
+    }
+
+    /// Round-off of imbalances of one node (m²/s).
+    pub fn allowed_of(&self, node: usize, state: &State) -> f64 {
+        let sum = self.net.pipes_of(node).iter().fold(0.0, |sum, &pipe| {
+            let [a, b] = self.net.ends[pipe as usize].map(|end| end as usize);
+            sum + self.round_off(pipe as usize, [state.u[a], state.u[b]])[usize::from(b == node)]
+        });
+        ROUND_OFF * sum
+    }
+
+    /// Slopes that nodes have beside those of pipes: the pull, and a hold for stagnant pools.
+    pub fn own_slope(&self, node: usize) -> f64 {
+        let share = if let Hold::Pull(_, share) = &self.hold { *share } else { 0.0 };
+        self.sums[node] * (share + HOLD)
+    }
+
+    /// Imbalances by a pipe with the unknowns of its upper and lower node.
+    fn part(&self, pipe: usize, [upper, lower]: [f64; 2]) -> Part {
+        let drop = self.net.drops[pipe];
+        let flow = law::flow(self.conductance[pipe], drop, upper, lower);
+        let mut imbalance = [flow, -flow];
+        if let Hold::Store(storage, old, time) = &self.hold {
+            let was = self.net.ends[pipe].map(|end| old[end as usize]);
+            let stored = stored(storage, pipe, drop, [upper, lower], was);
+            imbalance[0] += stored[0] / time;
+            imbalance[1] += stored[1] / time;
+        }
+        Part { imbalance, flow }
+    }
+
+    /// Slopes of the imbalances of the upper and lower node of a pipe, by the unknown of the upper and of the lower.
+    pub fn slopes(&self, pipe: usize, u: [f64; 2], wet: [bool; 2]) -> [[f64; 2]; 2] {
+        let (drop, conductance) = (self.net.drops[pipe], self.conductance[pipe]);
+        let (falls, room) = (law::filling(u[0]) * drop, drop - law::pressure_head(u[1]));
+        let is_film = falls < room || (falls <= room && !wet[1]);
+        let by_upper = match (wet[0], is_film) {
+            (true, _) => conductance,
+            (false, true) => conductance * drop / DELTA,
+            (false, false) => 0.0,
+        };
+        let by_lower = if is_film || !wet[1] { 0.0 } else { -conductance };
+        let mut slopes = [[by_upper, by_lower], [-by_upper, -by_lower]];
+        if let Hold::Store(storage, old, time) = &self.hold {
+            let was = self.net.ends[pipe].map(|end| old[end as usize]);
+            let ([aa, ab], bb) = stored_slopes(storage, pipe, drop, [u, was], wet);
+            slopes[0][0] += aa / time;
+            slopes[0][1] += ab / time;
+            slopes[1][1] += bb / time;
+        }
+        slopes
+    }
+
+    /// Size of the terms of a pipe, of which round-off is a share, at its upper and lower node (m²/s).
+    fn round_off(&self, pipe: usize, u: [f64; 2]) -> [f64; 2] {
+        let flows = u.map(|u| self.conductance[pipe] * (u.abs() + self.net.drops[pipe]));
+        match &self.hold {
+            Hold::Store(storage, _, time) => {
+                let (volume, compliance) = (storage.volume[pipe], storage.compliance[pipe]);
+                [0, 1].map(|k| flows[k] + (volume + compliance * u[k].abs()) / time)
+            }
+            _ => flows,
+        }
+    }
+}
+
+/// Share of a pipe that is full of water from its lower end, with the unknown there.
+fn full(lower: f64, drop: f64) -> f64 {
+    law::wet_share(lower, drop)
+}
+
+/// Water (m²) that a pipe books to its upper and to its lower node as its unknowns change: below the surface it is
+/// full, above it the film stands in it. The two add up to what it holds more.
+fn stored(storage: &Storage, pipe: usize, drop: f64, now: [f64; 2], was: [f64; 2]) -> [f64; 2] {
+    let (volume, half) = (storage.volume[pipe], 0.5 * storage.compliance[pipe]);
+    let (filled, was_filled) = (law::filling(now[0]), law::filling(was[0]));
+    let (full, was_full) = (full(now[1], drop), full(was[1], drop));
+    let pressed = |k: usize| half * (law::pressure_head(now[k]) - law::pressure_head(was[k]));
+    let top = volume * (1.0 - full) * (filled - was_filled);
+    let foot = volume * (1.0 - was_filled) * (full - was_full);
+    [top + pressed(0), foot + pressed(1)]
+}
+
+/// Slopes of what a pipe books: of the upper node by both unknowns, of the lower one by its own.
+fn stored_slopes(
+    storage: &Storage,
+    pipe: usize,
+    drop: f64,
+    [now, was]: [[f64; 2]; 2],
+    wet: [bool; 2],
+) -> ([f64; 2], f64) {
+    let (volume, half) = (storage.volume[pipe], 0.5 * storage.compliance[pipe]);
+    let (filled, was_filled) = (law::filling(now[0]), law::filling(was[0]));
+    let fills = if wet[1] && now[1] < drop { 1.0 / drop } else { 0.0 };
+    let by_film = if wet[0] { 0.0 } else { volume * (1.0 - full(now[1], drop)) / DELTA };
+    let pressed = wet.map(|wet| if wet { half } else { 0.0 });
+    let upper = [by_film + pressed[0], -volume * (filled - was_filled) * fills];
+    (upper, volume * (1.0 - was_filled) * fills + pressed[1])
+}
