@@ -17,6 +17,7 @@ mod issue_the_mesh_decided_about_an_end;
 mod kinematics;
 mod limit_analysis;
 mod searches_begin_anywhere;
+mod seepage;
 mod slips_before_it_holds;
 mod soil_slope;
 mod support;
