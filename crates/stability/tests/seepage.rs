@@ -48,19 +48,19 @@ fn factor(uplift: impl Fn(f64) -> f64) -> f64 {
     (25e3 * length + normal * 35f64.to_radians().tan()) / (weight * s + push * c)
 }
 
-/// Uplift (N/m) of pressures that are linear between the ends of joints with these apertures: flow in series.
+/// Uplift (N/m) of pressures that are linear between the ends of joints with these apertures: the greatest flow in series
+/// that leaves no pressure negative. Below where it is 0 for the first time, water runs as a film.
 fn uplift(apertures: &[f64], length: f64) -> f64 {
-    let (step, resistance) = (length / apertures.len() as f64, |e: &f64| 1.0 / e.powi(3));
-    let whole: f64 = apertures.iter().map(resistance).sum();
-    let (mut passed, mut pressure, mut sum) = (0.0, 0.0, 0.0);
-    for (k, aperture) in apertures.iter().enumerate() {
-        passed += resistance(aperture);
-        let height = FOOT[1] * (k + 1) as f64 / apertures.len() as f64;
-        let next = 9810.0 * (WATER * passed / whole - height);
-        sum += 0.5 * (pressure + next) * step;
-        pressure = next;
-    }
-    sum
+    let count = apertures.len();
+    let (step, fall) = (length / count as f64, FOOT[1] / count as f64);
+    // From the crack down, per unit of flow.
+    let mut resistance = vec![0.0];
+    apertures.iter().rev().for_each(|e| resistance.push(resistance[resistance.len() - 1] + 1.0 / e.powi(3)));
+    let head = |k: usize| WATER - FOOT[1] + k as f64 * fall;
+    let (flow, last) =
+        (1..=count).map(|k| (head(k) / resistance[k], k)).min_by(|a, b| a.0.total_cmp(&b.0)).expect("one");
+    let pressure = |k: usize| if k < last { 9810.0 * (head(k) - flow * resistance[k]) } else { 0.0 };
+    (0..count).map(|k| 0.5 * (pressure(k) + pressure(k + 1)) * step).sum()
 }
 
 /// Sixteen joints with the resistances of an aperture that goes linearly from the toe to the crack.
