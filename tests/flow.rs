@@ -5,7 +5,7 @@
 use crate::common::{case, refusal, run_stage, simulation, step};
 use enmm::geometry::Vector;
 use enmm::model::bytes::{Keeper, decode, encode};
-use enmm::model::{Seepage, Simulation, State};
+use enmm::model::{FlowBalance, Seepage, Simulation, State};
 
 /// A slope over a bench with four joints that cross, and water on its left.
 fn slope(more: &str) -> String {
@@ -18,6 +18,11 @@ fn slope(more: &str) -> String {
          axes = \"x\"\n[[fix]]\nedge = [[12, 0], [12, 8]]\naxes = \"x\"\n{more}[[stage]]\nname = \"rest\"\n\
          kind = \"static\"\nduration = 2.0\n"
     )
+}
+
+/// The balance of the stage in progress.
+fn balance(simulation: &Simulation) -> &FlowBalance {
+    flowing(simulation).balances.last().expect("a balance")
 }
 
 fn flowing(simulation: &Simulation) -> &Seepage {
@@ -37,7 +42,7 @@ fn where_all_heads_are_equal_water_presses_as_if_it_were_still() {
     let apart = a.iter().zip(&b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     println!("{pushed:.3e} N/m of water, {:.1e} of the weight apart", apart / weight);
     assert!(pushed > 0.5 * weight && apart <= 1e-12 * weight, "{apart} of {weight}");
-    assert!(flowing(&moving).sums.as_flattened().iter().all(|q| *q < 1e-18), "{:?}", flowing(&moving).sums);
+    assert!(balance(&moving).sums.as_flattened().iter().all(|q| *q < 1e-18), "{:?}", balance(&moving));
 }
 
 /// A plate with a level joint at a height of 4 m, two joints from there to its top, and what else.
@@ -60,7 +65,7 @@ const T: f64 = 1000.0 * 9.81 * 8e-12 / (12.0 * 1e-3);
 
 /// Checks what enters and leaves left, right, from the reservoir and from the air (m²/s), to rounding.
 fn assert_flows(simulation: &Simulation, exact: [[f64; 2]; 4]) {
-    let Seepage { sums, residual, .. } = flowing(simulation);
+    let FlowBalance { sums, residual, .. } = balance(simulation);
     for (k, (found, exact)) in sums.iter().zip(exact).enumerate() {
         let off = [0, 1].map(|side| (found[side] - exact[side]).abs());
         assert!(off.iter().all(|off| *off <= 1e-12 * T), "{k}: {found:?} instead of {exact:?}");
@@ -169,7 +174,9 @@ fn run(threads: usize, stopped: bool) -> State {
 #[test]
 fn threads_and_bytes_change_no_bit_and_what_enters_leaves() {
     let one = run(1, false);
-    let Seepage { sums, residual, .. } = one.seepage.as_ref().expect("water that flows");
+    let balances = &one.seepage.as_ref().expect("water that flows").balances;
+    let FlowBalance { stage, sums, residual } = balances.last().expect("a balance");
+    assert_eq!((balances.len(), *stage), (2, 2), "one of each static stage");
     let [enters, leaves] = [0, 1].map(|side| sums.iter().map(|sum| sum[side]).sum::<f64>());
     println!("{enters:.3e} m2/s enter, {:.1e} of them stay, residual {residual:.1e}", enters - leaves);
     assert!(enters > 1e-7 && (enters - leaves).abs() <= 1e-11 * enters, "{enters} {leaves}");
@@ -178,6 +185,33 @@ fn threads_and_bytes_change_no_bit_and_what_enters_leaves() {
         let bits = |state: &State| encode(Keeper::Model, state, "hash").expect("bytes");
         assert!(bits(&one) == bits(&other), "{threads} threads, stopped: {stopped}");
     }
+}
+
+/// Heads that say nothing, joints that no water reaches, and no water at all.
+#[test]
+fn flow_that_looks_unintended_is_doubted() {
+    let head = |level: f64| format!("[[head]]\nname = \"hill\"\nedge = [[12, 0], [12, 8]]\nlevel = {level:?}\n");
+    let told = |more: &str| simulation(&slope(more)).built().warnings.join("\n");
+    let flow = "[flow]\naperture = 1e-4\n";
+    let water = "[water]\nlevel = 6.3\njoints = false\n";
+    assert_eq!(told(&format!("{water}{flow}{}", head(7.0))), "");
+    assert!(told(&format!("{water}{flow}{}", head(6.3))).starts_with("flow: all heads are equal and no water flows"));
+    assert!(told(&format!("{flow}{}", head(-1.0))).starts_with("flow: no water enters"));
+    let alone = "[[joint]]\npoints = [[9.3, 2.5], [9.9, 3.9], [11, 3], [9.3, 2.5]]\nlaw = \"joint\"\n";
+    let text = slope(&format!("{water}{flow}{}{alone}", head(7.0)));
+    assert!(simulation(&text).built().warnings.join("\n").contains("meet neither a head nor an outcrop"));
+    let soil = slope(&format!("{water}{flow}{}", head(7.0)));
+    let soil = soil.replace("young = 1e10", "young = 1e10\nfriction_deg = 40\ncohesion = 1e6");
+    assert!(simulation(&soil).built().warnings.join("\n").contains("pores of rock that yields"));
+}
+
+#[test]
+fn a_survey_counts_the_net() {
+    let survey = simulation(&plate(LEVEL_JOINT, "", "")).flow_survey().expect("a net");
+    println!("{survey:?}");
+    assert_eq!((survey.heads, survey.outcrops, survey.dead_ends), (2, 2, 0));
+    assert!((survey.length - 18.0).abs() < 1e-9 && survey.isolated == 0.0 && survey.nodes == survey.pieces + 1);
+    assert!(survey.transmissivity.iter().all(|found| (found / T - 1.0).abs() < 1e-9), "{survey:?}");
 }
 
 #[test]

@@ -14,8 +14,8 @@ use crate::contact::{
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
-    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, Seepage, State,
-    WorstSection,
+    Counters, Course, Drive, Event, EventKind, Events, FlowBalance, FrictionDelay, Inputs, Ledger, Model, MostRest,
+    Seepage, State, WorstSection,
 };
 
 use super::Simulation;
@@ -180,7 +180,7 @@ impl Simulation {
         check_neighbours(model, neighbours)?;
         check_found(model, found, contacts, neighbours)?;
         self.check_stages(model, state)?;
-        check_seepage(model, seepage.as_ref())?;
+        check_seepage(model, seepage.as_ref(), state.stage)?;
         check_drive(model, drive)?;
         check_events(model, events)?;
         check_ledger(ledger)?;
@@ -308,23 +308,28 @@ fn check_section(what: &str, share: f64, (ends, carries): ([Point; 2], &Resultan
     of.into_iter().try_for_each(|(field, value)| number(format_args!("{what}.{field}"), value, FORCE))
 }
 
-fn check_seepage(model: &Model, seepage: Option<&Seepage>) -> Fit {
+fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
     let (net, seepage) = match (&model.flow, seepage) {
         (Some(net), Some(seepage)) => (net, seepage),
         (None, None) => return Ok(()),
         (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
         (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
     };
-    let Seepage { unknowns, conducts, flooded, sums, residual } = seepage;
+    let Seepage { unknowns, conducts, flooded, balances } = seepage;
     length("seepage.unknowns", unknowns.len(), net.places.len())?;
     length("seepage.conducts", conducts.len(), net.pieces.len())?;
     length("seepage.flooded", flooded.len(), model.covers.block_count())?;
-    length("seepage.sums", sums.len(), net.heads.len() + 2)?;
     for (k, unknown) in unknowns.iter().enumerate() {
         between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
     }
-    numbers("seepage.sums", sums.as_flattened(), RATE)?;
-    number("seepage.residual", *residual, RATE)
+    in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
+    for (k, FlowBalance { stage: of, sums, residual }) in balances.iter().enumerate() {
+        at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
+        length("seepage.balances.sums", sums.len(), net.heads.len() + 2)?;
+        numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
+        number("seepage.balances.residual", *residual, RATE)?;
+    }
+    Ok(())
 }
 
 fn check_drive(model: &Model, drive: &Drive) -> Fit {

@@ -29,13 +29,14 @@ pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState};
 pub use restless::Restless;
+pub use seepage::FlowSurvey;
 pub use simulation::Simulation;
 pub use tune::Tunable;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
-    BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity,
-    Seepage, State,
+    BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, FlowBalance, Inputs, Ledger, Port, PortKind,
+    Quantity, Seepage, State,
 };
 pub use crate::step::{StepError, StepReport, Wanted};

@@ -1,12 +1,13 @@
 //! Steady flow in the joints at the start of a static stage, and what is known of it.
 
-use enmm_seepage::{Failure, Unsolved};
+use enmm_seepage::{Condition, Failure, Unsolved};
+use serde::Serialize;
 
 use crate::contact::EdgeId;
 use crate::cover::BlockId;
-use crate::flow::{FlowNet, FlowPiece, Outcrop, Outside};
+use crate::flow::{FlowNet, FlowPiece, Inlet, Outcrop, Outside};
 use crate::geometry::{Point, Vector};
-use crate::state::{Model, Seepage, State};
+use crate::state::{FlowBalance, Model, Seepage, State};
 
 use super::Simulation;
 use super::bonds::{BondState, bond_states};
@@ -23,6 +24,36 @@ impl Simulation {
         let seen = Seen { model, state, net, stage, start };
         self.state.seepage = Some(seen.steady().map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
         Ok(())
+    }
+}
+
+/// Size of the net of joints in which water flows, and what of it water reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FlowSurvey {
+    /// Nodes: ends and crossings of pieces of joint.
+    pub nodes: usize,
+    /// Pieces of joint that conduct.
+    pub pieces: usize,
+    /// Nodes that have a head, that of the reservoir included.
+    pub heads: usize,
+    /// Nodes that are open to the air.
+    pub outcrops: usize,
+    /// Nodes within the rock at which a single piece ends.
+    pub dead_ends: usize,
+    /// Length of all pieces that conduct (m).
+    pub length: f64,
+    /// Length of those that no head and no outcrop reaches (m): they are dry.
+    pub isolated: f64,
+    /// Least and greatest transmissivity (m²/s) of pieces that conduct.
+    pub transmissivity: [f64; 2],
+}
+
+impl Simulation {
+    /// The net of joints now, if water flows in them.
+    pub fn flow_survey(&self) -> Option<FlowSurvey> {
+        let (model, state) = (&self.built.model, &self.state);
+        let net = model.flow.as_ref()?;
+        Some(Seen { model, state, net, stage: state.stage as usize, start: self.time() }.survey())
     }
 }
 
@@ -49,6 +80,49 @@ struct Seen<'a> {
 
 impl Seen<'_> {
     fn steady(&self) -> Result<Seepage, Failure> {
+        let conductance = self.conductance();
+        let flooded = self.flooded();
+        let conditions = self.conditions(&flooded);
+        let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
+        let flow = self.net.net.steady(&conductance, &at_nodes)?;
+        let (stage, sums) = (self.stage as u32, self.net.sums(&conditions, &flow));
+        let mut balances = self.state.seepage.as_ref().map_or_else(Vec::new, |seepage| seepage.balances.clone());
+        balances.push(FlowBalance { stage, sums, residual: flow.residual });
+        let conducts = conductance.iter().map(|g| *g > 0.0).collect();
+        Ok(Seepage { unknowns: flow.u, conducts, flooded, balances })
+    }
+
+    fn survey(&self) -> FlowSurvey {
+        let conductance = self.conductance();
+        let conditions = self.conditions(&self.flooded());
+        let labels = self.net.net.pieces(&conductance);
+        let (mut ends, mut fed) = (vec![0_u32; labels.len()], vec![false; labels.len()]);
+        let open = || self.net.pieces.iter().zip(&conductance).filter(|(_, g)| **g > 0.0);
+        open().for_each(|(piece, _)| piece.nodes.iter().for_each(|&node| ends[node as usize] += 1));
+        for (label, _) in labels.iter().zip(&conditions).filter(|(_, condition)| condition.1.is_some()) {
+            fed[*label as usize] = true;
+        }
+        let nodes = || conditions.iter().zip(&ends).filter(|(_, ends)| **ends > 0);
+        let count = |is: fn(&Condition) -> bool| nodes().filter(|(condition, _)| is(&condition.0)).count();
+        let lengths = |all: bool| {
+            let is_isolated = |piece: &FlowPiece| !fed[labels[piece.nodes[0] as usize] as usize];
+            open().filter(|(piece, _)| all || is_isolated(piece)).map(|(piece, _)| piece.length).sum()
+        };
+        let each = || open().map(|(piece, g)| g * piece.length);
+        FlowSurvey {
+            nodes: nodes().count(),
+            pieces: open().count(),
+            heads: count(|condition| matches!(condition, Condition::Held { .. })),
+            outcrops: count(|condition| matches!(condition, Condition::Air)),
+            dead_ends: nodes().filter(|(condition, ends)| **ends == 1 && condition.1.is_none()).count(),
+            length: lengths(true),
+            isolated: lengths(false),
+            transmissivity: [each().fold(f64::INFINITY, f64::min), each().fold(0.0, f64::max)],
+        }
+    }
+
+    /// Conductance (m²/s per m of head) of each piece; 0 where blocks are gone, bonds hold or the law is closed.
+    fn conductance(&self) -> Vec<f64> {
         let drive = &self.state.drive;
         let weight = self.state.water_density * drive.gravity(drive.share(self.start)).norm();
         let bonds = bond_states(self.model, self.state);
@@ -61,19 +135,13 @@ impl Seen<'_> {
             true => self.net.conductance(piece, self.apertures(piece), weight),
             false => 0.0,
         };
-        let conductance: Vec<f64> = self.net.pieces.iter().map(of_piece).collect();
-        let flooded = self.flooded();
-        let (dug, depths) = (self.dug(&flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
-        let conditions = self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths });
-        let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
-        let flow = self.net.net.steady(&conductance, &at_nodes)?;
-        Ok(Seepage {
-            sums: self.net.sums(&conditions, &flow),
-            residual: flow.residual,
-            unknowns: flow.u,
-            conducts: conductance.iter().map(|g| *g > 0.0).collect(),
-            flooded,
-        })
+        self.net.pieces.iter().map(of_piece).collect()
+    }
+
+    /// What holds at each node, and which inlet it is.
+    fn conditions(&self, flooded: &[bool]) -> Vec<(Condition, Option<Inlet>)> {
+        let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
+        self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths })
     }
 
     fn block(&self, edge: EdgeId) -> BlockId {

@@ -124,8 +124,8 @@ impl State {
 }
 
 fn flowing(seepage: &Seepage) -> usize {
-    let Seepage { unknowns, conducts, flooded, sums, residual: _ } = seepage;
-    sum(&[unknowns, conducts, flooded, sums])
+    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    sum(&[unknowns, conducts, flooded, balances])
 }
 
 impl Workspace {

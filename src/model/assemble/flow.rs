@@ -1,10 +1,12 @@
 //! The net of joints of a case in which water flows.
 
+use enmm_seepage::Condition;
+
 use crate::contact::{Boundary, EdgeId, Facings, LawId};
-use crate::flow::{FlowNet, HeldHead, Outcrop};
+use crate::flow::{FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside};
 use crate::geometry::{Point, segment};
 use crate::model::case::{self, Case, Flow, Head, Invalid};
-use crate::state::Water;
+use crate::state::{Model, Water};
 
 use super::joints::Joints;
 use super::ports::Faces;
@@ -113,4 +115,94 @@ fn refuse_tight(case: &Case, net: &FlowNet) -> Result<(), Invalid> {
     let Flow { aperture, .. } = case.flow.clone().unwrap_or_default();
     let own = aperture.map_or("in each law that joints have".to_owned(), |e| format!("{e} m here, 0 in their laws"));
     Err(invalid("flow", format!("has no effect: no joint conducts, with apertures of {own}; correct the laws")))
+}
+
+/// Share of the joints that may have no outlet before the user is told.
+const ISOLATED_SHARE: f64 = 0.05;
+/// Difference of heads (m) that is none.
+const EQUAL: f64 = 1e-9;
+
+/// What looks unintended about the flow of a case.
+pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
+    let Some(net) = &model.flow else { return Vec::new() };
+    let stages: Vec<_> = (0..case.stages.len()).map(|stage| conditions(net, model, stage)).collect();
+    let held = |(condition, _): &At| match condition {
+        Condition::Held { head } => Some(*head),
+        _ => None,
+    };
+    let mut warnings = Vec::new();
+    if stages.iter().flatten().all(|at| held(at).is_none()) {
+        warnings.push(
+            "flow: no water enters, so that all joints are dry: no [[head]] is above the joints that it meets, and \
+             none crops out below [water]"
+                .to_owned(),
+        );
+    } else if !digs(case) && stages.iter().all(|stage| is_still(net, stage)) {
+        warnings.push(
+            "flow: all heads are equal and no water flows; still water, [water] without [flow], gives the same \
+             pressures"
+                .to_owned(),
+        );
+    }
+    warnings.extend(isolated(net, &stages[0]));
+    if model.water.as_ref().is_some_and(|water| water.in_rock) && model.strengths.iter().flatten().any(|s| s.is_porous)
+    {
+        warnings.push(
+            "flow: the pressure in the pores of rock that yields is that of the surface of [water], not that of the \
+             flow in the joints; give `rock = false` in [water] for none"
+                .to_owned(),
+        );
+    }
+    warnings
+}
+
+/// What holds at a node.
+type At = (Condition, Option<Inlet>);
+
+fn digs(case: &Case) -> bool {
+    case.stages.iter().any(|stage| !stage.excavate.is_empty() || stage.excavate_region.is_some())
+}
+
+/// What holds at the nodes at the start of a stage if nothing is dug.
+fn conditions(net: &FlowNet, model: &Model, stage: usize) -> Vec<At> {
+    let depth = |at: &Point| {
+        let surface = model.water.as_ref().map(|water| &water.surfaces[stage]);
+        surface.map_or(-1.0, |surface| surface.depth(surface.level, *at))
+    };
+    let depths: Vec<f64> = net.places.iter().map(depth).collect();
+    net.conditions(Outside { stage, dug: &vec![Outcrop::None; depths.len()], depths: &depths })
+}
+
+/// Whether all heads are equal, and no outcrop is below them.
+fn is_still(net: &FlowNet, conditions: &[At]) -> bool {
+    let (mut low, mut high, mut lowest) = (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
+    for ((condition, _), place) in conditions.iter().zip(&net.places) {
+        match condition {
+            Condition::Held { head } => (low, high) = (low.min(*head), high.max(*head)),
+            Condition::Air => lowest = lowest.min(place.y),
+            _ => {}
+        }
+    }
+    high - low <= EQUAL && lowest >= high - EQUAL
+}
+
+/// Joints from which no water leaves and to which none comes.
+fn isolated(net: &FlowNet, conditions: &[At]) -> Option<String> {
+    let open = |piece: &FlowPiece| net.apertures[piece.law.index()] > 0.0;
+    let conductance: Vec<f64> = net.pieces.iter().map(|piece| if open(piece) { 1.0 } else { 0.0 }).collect();
+    let labels = net.net.pieces(&conductance);
+    let mut fed = vec![false; labels.len()];
+    for (label, _) in labels.iter().zip(conditions).filter(|(_, at)| at.1.is_some()) {
+        fed[*label as usize] = true;
+    }
+    let length = |is: &dyn Fn(&FlowPiece) -> bool| -> f64 {
+        net.pieces.iter().filter(|piece| open(piece) && is(piece)).map(|piece| piece.length).sum()
+    };
+    let (all, alone) = (length(&|_| true), length(&|piece| !fed[labels[piece.nodes[0] as usize] as usize]));
+    (alone > ISOLATED_SHARE * all).then(|| {
+        format!(
+            "flow: {alone:.3} m of {all:.3} m of joints meet neither a head nor an outcrop, and are dry: lead them to \
+             others, or hold a [[head]] where they end"
+        )
+    })
 }

@@ -120,6 +120,7 @@ pub fn build(
     warnings.extend(bolt_warnings);
     warnings.extend(bonds::warnings(case, &model, &joints));
     warnings.extend(quiet::warning(case));
+    warnings.extend(flow::warnings(case, &model));
     warnings.extend(quiet::ringing(case));
     warnings.extend(warnings::of_values(case, &model, &positions));
     let (low, high) = polygon::bounds(&model.covers.polygons.points);
