@@ -81,8 +81,8 @@ impl Solver {
         false
     }
 
-    /// Takes one more step from a state in balance, and keeps it where it leaves all nodes on their branches and in a
-    /// better balance: what is allowed may add up over many nodes.
+    /// Takes one more step from a state in balance, and keeps it where it brings a better one: what is allowed at
+    /// each node may add up over many.
     pub fn polish(&mut self, problem: &Problem, state: &mut State) {
         let before = self.off_by(problem, state);
         self.linearize(problem, state);
@@ -90,7 +90,7 @@ impl Solver {
         let mut next = state.clone();
         self.go(problem, &mut next, Crossing::Goes);
         problem.imbalance(&next.u, &mut self.imbalance);
-        if next.wet == state.wet && self.off_by(problem, &next) <= before {
+        if self.off_by(problem, &next) <= before {
             *state = next;
         } else {
             problem.imbalance(&state.u, &mut self.imbalance);

@@ -7,7 +7,13 @@ use crate::newton::{Crossing, Plan, Solver};
 use crate::problem::{Hold, Problem, State};
 
 /// From the full net down.
-const NEWTON: Plan = Plan { steps: 30, crossing: Crossing::Empties, balances_from: 5 };
+
+fn knob(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
+fn cr(k: f64) -> Crossing { match k as u32 { 0 => Crossing::Empties, 1 => Crossing::Goes, _ => Crossing::Bends } }
+fn newton() -> Plan { Plan { steps: knob("NS",30.) as u32, crossing: Crossing::Empties, balances_from: knob("NB",5.) as u32 } }
+fn stride() -> Plan { Plan { steps: knob("SS",20.) as u32, crossing: cr(knob("SC",2.)), balances_from: knob("SB",2.) as u32 } }
+fn trial() -> Plan { Plan { steps: knob("TS",6.) as u32, crossing: Crossing::Empties, balances_from: knob("TB",2.) as u32 } }
+
 /// One stride of the march.
 const STRIDE: Plan = Plan { steps: 20, crossing: Crossing::Bends, balances_from: 2 };
 /// A trial of Newton's method after a stride.
@@ -27,7 +33,7 @@ pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Op
     let mut solver = Solver::of(net);
     let start = State::of(start.map_or_else(|| full.clone(), |start| within(&problem, &full, start)));
     let mut state = start.clone();
-    if !solver.run(&problem, &mut state, NEWTON) {
+    if !solver.run(&problem, &mut state, newton()) {
         let unsolved = solver.worst(&problem, &state);
         state = march(&mut problem, &mut solver, start).ok_or(Unsolved { solves: solver.solves, ..unsolved })?;
     }
@@ -46,21 +52,21 @@ fn within(problem: &Problem, given: &[f64], start: &[f64]) -> Vec<f64> {
 
 /// Lets the full net drain in strides, each pulled back to its start, and tries Newton's method after each.
 fn march(problem: &mut Problem, solver: &mut Solver, mut state: State) -> Option<State> {
-    let mut length = FIRST;
-    while solver.solves < SOLVES_MAX && (LENGTHS[0]..LENGTHS[1]).contains(&length) {
+    let mut length = knob("FIRST", FIRST);
+    while (solver.solves as f64) < knob("MAX", 400.) && (LENGTHS[0]..LENGTHS[1]).contains(&length) {
         let old = state.u.clone();
         let mut next = state.clone();
         problem.hold = Hold::Pull(old, 1.0 / length);
-        let arrived = solver.run(problem, &mut next, STRIDE);
+        let arrived = solver.run(problem, &mut next, stride());
         problem.hold = Hold::Nothing;
         if !arrived {
-            length /= LONGER;
+            if knob("LOG",0.)>0. {println!("   stride {length:e} failed, solves {}", solver.solves);} length /= LONGER;
             continue;
         }
-        length *= LONGER;
+        if knob("LOG",0.)>0. {println!("   stride {length:e} ok, solves {}", solver.solves);} length *= LONGER;
         state = next;
         let mut trial = state.clone();
-        if solver.run(problem, &mut trial, TRIAL) {
+        if solver.run(problem, &mut trial, crate::steady::trial()) {
             return Some(trial);
         }
     }

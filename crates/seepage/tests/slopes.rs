@@ -199,3 +199,23 @@ fn ten_thousand_joints_are_solved_in_a_second() {
         assert!(nodes > 40_000 && flow.solves < 60 && time.as_secs_f64() < 20.0);
     }
 }
+
+#[test]
+fn experiment() {
+    for scatter in [0.0, 1.0, 2.0, 4.0] {
+        let (mut solves, mut most, mut long, mut bad) = (0, 0, 0, 0);
+        let start = Instant::now();
+        for seed in 100..200 {
+            let joints = slope(seed, scatter, 1.0);
+            let Ok(flow) = joints.net().steady(&joints.conductance(), &joints.conditions) else { bad += 1; continue };
+            solves += flow.solves;
+            most = most.max(flow.solves);
+            long += u32::from(flow.solves > 31);
+        }
+        println!("XX scatter {scatter}: {solves} solves, {most} at most, {long} by the march, {bad} bad {:?}", start.elapsed());
+    }
+    for (scatter, scale) in [(1.0, 3.0), (2.0, 3.0), (1.0, 5.0)] { for seed in 0..3 {
+            let joints = slope(seed, scatter, scale);
+            match joints.net().steady(&joints.conductance(), &joints.conditions) { Ok(flow) => println!("XX {scatter} {scale} {} solves", flow.solves), Err(e) => println!("XX {e}") }
+    }}
+}
