@@ -1,6 +1,5 @@
 //! Nodes balanced one by one: where many change between pressure and film at once, Newton's method circles.
 
-use crate::law::DELTA;
 use crate::problem::{Problem, State};
 
 /// Most sweeps over the nodes.
@@ -62,7 +61,7 @@ fn root(problem: &Problem, state: &State, node: usize, least: f64) -> f64 {
     if value.abs() <= allowed {
         return u;
     }
-    let (mut low, mut high) = (-DELTA, u);
+    let (mut low, mut high) = (-problem.scales[node], u);
     if value > 0.0 {
         if at(low).0 >= -allowed {
             return low;

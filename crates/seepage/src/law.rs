@@ -52,5 +52,11 @@ pub fn volume(e0: f64, e1: f64, length: f64, storage: f64) -> f64 {
 /// Full, it is the conductance times the difference of heads. Where a free surface lies in it, all that falls to the
 /// surface as a film goes on. Dry, a film falls with a unit gradient.
 pub fn flow(conductance: f64, drop: f64, upper: f64, lower: f64) -> f64 {
-    conductance * (pressure_head(upper) + (filling(upper) * drop).min(drop - pressure_head(lower)))
+    flow_of(conductance, drop, (pressure_head(upper), filling(upper)), pressure_head(lower))
+}
+
+/// Flow (m²/s) as [`flow`] gives it, of pressure head (m) and filling of the upper node and pressure head (m) of the
+/// lower.
+pub(crate) fn flow_of(conductance: f64, drop: f64, (pressure, filling): (f64, f64), lower: f64) -> f64 {
+    conductance * (pressure + (filling * drop).min(drop - lower))
 }

@@ -2,7 +2,6 @@
 
 use crate::balance;
 use crate::error::Unsolved;
-use crate::law::DELTA;
 use crate::lu::{Factors, Matrix};
 use crate::net::Net;
 use crate::problem::{Imbalance, Problem, State};
@@ -107,7 +106,7 @@ impl Solver {
     pub fn is_bound(&self, problem: &Problem, state: &State, node: usize) -> bool {
         let (value, (top, runs_off)) = (self.imbalance.values[node], problem.tops[node]);
         let overflows = runs_off && state.u[node] >= top && value <= 0.0;
-        overflows || state.u[node] <= -DELTA && problem.sources[node] < 0.0 && value >= 0.0
+        overflows || state.u[node] <= -problem.scales[node] && problem.sources[node] < 0.0 && value >= 0.0
     }
 
     /// Whether a node is out of balance.
@@ -162,7 +161,7 @@ impl Solver {
             let (value, allowed) = (self.imbalance.values[node], self.imbalance.allowed[node]);
             let is_flat = self.active[node] && !state.wet[node] && self.matrix.diagonal[node] <= 0.0;
             if is_flat && value.abs() > allowed {
-                let to = if value < 0.0 { 0.0 } else { -DELTA };
+                let to = if value < 0.0 { 0.0 } else { -problem.scales[node] };
                 changed |= state.u[node] != to || (value < 0.0 && !problem.tops[node].1);
                 state.u[node] = to;
                 state.wet[node] = value < 0.0 && !problem.tops[node].1;
@@ -201,12 +200,12 @@ impl Solver {
             if was != wet {
                 self.crossed.push(node as u32);
                 to = match crossing {
-                    Crossing::Empties if was => -DELTA,
+                    Crossing::Empties if was => -problem.scales[node],
                     Crossing::Bends => to * self.bend(problem, state, node, was),
                     _ => to,
                 };
             }
-            self.right[node] = to.min(top).max(-DELTA);
+            self.right[node] = to.min(top).max(-problem.scales[node]);
         }
         for node in 0..self.active.len() {
             if self.active[node] {

@@ -8,11 +8,25 @@ use crate::problem::{Hold, Problem, State};
 
 /// From the full net down.
 
-fn knob(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
-fn cr(k: f64) -> Crossing { match k as u32 { 0 => Crossing::Empties, 1 => Crossing::Goes, _ => Crossing::Bends } }
-fn newton() -> Plan { Plan { steps: knob("NS",30.) as u32, crossing: Crossing::Empties, balances_from: knob("NB",5.) as u32 } }
-fn stride() -> Plan { Plan { steps: knob("SS",20.) as u32, crossing: cr(knob("SC",2.)), balances_from: knob("SB",2.) as u32 } }
-fn trial() -> Plan { Plan { steps: knob("TS",6.) as u32, crossing: Crossing::Empties, balances_from: knob("TB",2.) as u32 } }
+fn knob(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+fn cr(k: f64) -> Crossing {
+    match k as u32 {
+        0 => Crossing::Empties,
+        1 => Crossing::Goes,
+        _ => Crossing::Bends,
+    }
+}
+fn newton() -> Plan {
+    Plan { steps: knob("NS", 30.) as u32, crossing: Crossing::Empties, balances_from: knob("NB", 5.) as u32 }
+}
+fn stride() -> Plan {
+    Plan { steps: knob("SS", 20.) as u32, crossing: cr(knob("SC", 2.)), balances_from: knob("SB", 2.) as u32 }
+}
+fn trial() -> Plan {
+    Plan { steps: knob("TS", 6.) as u32, crossing: Crossing::Empties, balances_from: knob("TB", 2.) as u32 }
+}
 
 /// One stride of the march.
 const STRIDE: Plan = Plan { steps: 20, crossing: Crossing::Bends, balances_from: 2 };
@@ -31,7 +45,8 @@ const SOLVES_MAX: u32 = 400;
 pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
     let (mut problem, full) = problem(net, conductance, conditions)?;
     let mut solver = Solver::of(net);
-    let start = State::of(start.map_or_else(|| full.clone(), |start| within(&problem, &full, start)));
+    let start = start.map_or_else(|| full.clone(), |start| within(&problem, &full, start));
+    let start = State::of(start.iter().enumerate().map(|(node, &u)| problem.scaled(node, u)).collect());
     let mut state = start.clone();
     if !solver.run(&problem, &mut state, newton()) {
         let unsolved = solver.worst(&problem, &state);
@@ -60,10 +75,16 @@ fn march(problem: &mut Problem, solver: &mut Solver, mut state: State) -> Option
         let arrived = solver.run(problem, &mut next, stride());
         problem.hold = Hold::Nothing;
         if !arrived {
-            if knob("LOG",0.)>0. {println!("   stride {length:e} failed, solves {}", solver.solves);} length /= LONGER;
+            if knob("LOG", 0.) > 0. {
+                println!("   stride {length:e} failed, solves {}", solver.solves);
+            }
+            length /= LONGER;
             continue;
         }
-        if knob("LOG",0.)>0. {println!("   stride {length:e} ok, solves {}", solver.solves);} length *= LONGER;
+        if knob("LOG", 0.) > 0. {
+            println!("   stride {length:e} ok, solves {}", solver.solves);
+        }
+        length *= LONGER;
         state = next;
         let mut trial = state.clone();
         if solver.run(problem, &mut trial, crate::steady::trial()) {
@@ -164,5 +185,6 @@ pub fn flow(problem: &Problem, solver: &Solver, state: State) -> Flow {
     }
     let through_flow = inflow.iter().filter(|&&inflow| inflow > 0.0).sum();
     let residual = solver.worst(problem, &state).residual.abs();
-    Flow { u: state.u, flow, inflow, run_off, solves: solver.solves, residual, through_flow }
+    let u = (0..nodes).map(|node| problem.unscaled(node, state.u[node])).collect();
+    Flow { u, flow, inflow, run_off, solves: solver.solves, residual, through_flow }
 }

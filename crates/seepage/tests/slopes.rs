@@ -207,15 +207,26 @@ fn experiment() {
         let start = Instant::now();
         for seed in 100..200 {
             let joints = slope(seed, scatter, 1.0);
-            let Ok(flow) = joints.net().steady(&joints.conductance(), &joints.conditions) else { bad += 1; continue };
+            let Ok(flow) = joints.net().steady(&joints.conductance(), &joints.conditions) else {
+                bad += 1;
+                continue;
+            };
             solves += flow.solves;
             most = most.max(flow.solves);
             long += u32::from(flow.solves > 31);
         }
-        println!("XX scatter {scatter}: {solves} solves, {most} at most, {long} by the march, {bad} bad {:?}", start.elapsed());
+        println!(
+            "XX scatter {scatter}: {solves} solves, {most} at most, {long} by the march, {bad} bad {:?}",
+            start.elapsed()
+        );
     }
-    for (scatter, scale) in [(1.0, 3.0), (2.0, 3.0), (1.0, 5.0)] { for seed in 0..3 {
+    for (scatter, scale) in [(1.0, 3.0), (2.0, 3.0), (1.0, 5.0)] {
+        for seed in 0..3 {
             let joints = slope(seed, scatter, scale);
-            match joints.net().steady(&joints.conductance(), &joints.conditions) { Ok(flow) => println!("XX {scatter} {scale} {} solves", flow.solves), Err(e) => println!("XX {e}") }
-    }}
+            match joints.net().steady(&joints.conductance(), &joints.conditions) {
+                Ok(flow) => println!("XX {scatter} {scale} {} solves", flow.solves),
+                Err(e) => println!("XX {e}"),
+            }
+        }
+    }
 }
