@@ -11,6 +11,7 @@
 //! Results are serial sums in a fixed order without fused operations: they have the same bits on any machine.
 
 mod balance;
+mod descent;
 mod error;
 pub mod law;
 mod lu;

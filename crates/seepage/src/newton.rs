@@ -96,8 +96,67 @@ impl Solver {
         }
     }
 
+    /// Whether all nodes are in balance.
+    pub fn is_balanced(&mut self, problem: &Problem, state: &State) -> bool {
+        problem.imbalance(&state.u, &mut self.imbalance);
+        self.is_settled(problem, state)
+    }
+
+    /// Finds the step of Newton's method from a state.
+    pub fn direct(&mut self, problem: &Problem, state: &mut State) {
+        self.linearize(problem, state);
+        if self.wake(problem, state) {
+            problem.imbalance(&state.u, &mut self.imbalance);
+            self.linearize(problem, state);
+        }
+        self.solve(problem);
+    }
+
+    /// Takes a share of that step.
+    pub fn step(&self, problem: &Problem, state: &State, next: &mut State, share: f64) {
+        for node in 0..self.active.len() {
+            let (top, runs_off) = problem.tops[node];
+            let mut to = state.u[node];
+            if self.active[node] {
+                to -= share * self.right[node];
+            }
+            if runs_off {
+                to = to.min(top);
+            }
+            if problem.sources[node] < 0.0 {
+                to = to.max(-problem.scales[node]);
+            }
+            next.u[node] = to;
+            next.wet[node] = if self.active[node] { to > 0.0 } else { state.wet[node] };
+        }
+    }
+
+    /// Share of that step at which the slopes change first; 1 where they do not.
+    pub fn first_kink(&self, problem: &Problem, state: &State) -> f64 {
+        let mut first = 1.0_f64;
+        let mut at = |value: f64, change: f64| {
+            let share = -value / change;
+            if share > 0.0 && share < first {
+                first = share;
+            }
+        };
+        for node in 0..self.active.len() {
+            if self.active[node] && !problem.tops[node].1 {
+                at(state.u[node], -self.right[node]);
+            }
+        }
+        for (pipe, ends) in problem.net.ends.iter().enumerate() {
+            let [a, b] = ends.map(|end| end as usize);
+            if problem.conductance[pipe] > 0.0 && !state.wet[a] && state.wet[b] {
+                let slope = problem.net.drops[pipe] / problem.scales[a];
+                at(state.u[a] * slope + state.u[b], -self.right[a] * slope - self.right[b]);
+            }
+        }
+        first
+    }
+
     /// Sum of the imbalances of nodes (m²/s).
-    fn off_by(&self, problem: &Problem, state: &State) -> f64 {
+    pub fn off_by(&self, problem: &Problem, state: &State) -> f64 {
         let counts = |node: &usize| problem.unknown[*node] && !self.is_bound(problem, state, *node);
         (0..state.u.len()).filter(counts).map(|node| self.imbalance.values[node].abs()).sum()
     }

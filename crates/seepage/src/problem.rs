@@ -118,9 +118,10 @@ impl<'a> Problem<'a> {
         if u < 0.0 { (u / self.scales[node]).max(-1.0) * DELTA } else { u }
     }
 
-    /// Share of its capacity with which a film leaves a node.
+    /// Share of its capacity with which a film leaves a node. On the way to a flow an unknown may be below the scale:
+    /// there is no kink, so that fewer stand in the way. No flow has such unknowns.
     fn filling(&self, node: usize, u: f64) -> f64 {
-        (1.0 + u / self.scales[node]).clamp(0.0, 1.0)
+        (1.0 + u / self.scales[node]).min(1.0)
     }
 
     /// Waters at the ends of a pipe, of the unknowns of its upper and lower node.

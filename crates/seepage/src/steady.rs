@@ -50,6 +50,12 @@ pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Op
     let mut state = start.clone();
     if !solver.run(&problem, &mut state, newton()) {
         let unsolved = solver.worst(&problem, &state);
+        if knob("START", 0.0) > 0.0 { state = start.clone(); }
+        if crate::descent::descend(&mut solver, &problem, &mut state, knob("DM", 1000.0) as u32) {
+            solver.polish(&problem, &mut state);
+            return Ok(flow(&problem, &solver, state));
+        }
+        if knob("MARCH", 0.0) == 0.0 { return Err(Unsolved { solves: solver.solves, ..unsolved }.into()); }
         state = march(&mut problem, &mut solver, start).ok_or(Unsolved { solves: solver.solves, ..unsolved })?;
     }
     solver.polish(&problem, &mut state);
