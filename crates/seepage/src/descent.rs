@@ -42,6 +42,7 @@ pub fn descend(solver: &mut Solver, problem: &Problem, state: &mut State, solves
                 break;
             }
         }
+        if std::env::var("DUMP").is_ok() { let now = solver.off_by(problem, &next); println!("  share {share} before {before:e} now {now:e} kink {:e}", if share < LEAST { solver.first_kink(problem, state) } else { 1.0 }); }
         std::mem::swap(state, &mut next);
     }
 }

@@ -1,5 +1,6 @@
 //! Steady flow.
 
+use crate::descent::descend;
 use crate::error::{Failure, Refused, Unsolved};
 use crate::law::{DELTA, pressure_head};
 use crate::net::{Condition, Flow, Net};
@@ -43,23 +44,35 @@ const SOLVES_MAX: u32 = 400;
 
 /// Steady flow in a net, from a start or from full.
 pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
-    let (mut problem, full) = problem(net, conductance, conditions)?;
+    let (problem, full) = problem(net, conductance, conditions)?;
     let mut solver = Solver::of(net);
     let start = start.map_or_else(|| full.clone(), |start| within(&problem, &full, start));
     let start = State::of(start.iter().enumerate().map(|(node, &u)| problem.scaled(node, u)).collect());
-    let mut state = start.clone();
-    if !solver.run(&problem, &mut state, newton()) {
-        let unsolved = solver.worst(&problem, &state);
-        if knob("START", 0.0) > 0.0 { state = start.clone(); }
-        if crate::descent::descend(&mut solver, &problem, &mut state, knob("DM", 1000.0) as u32) {
-            solver.polish(&problem, &mut state);
-            return Ok(flow(&problem, &solver, state));
+    let (mut high, mut low) = (start.clone(), start);
+    let mut unsolved = None;
+    while solver.solves < knob("MAX", 500.0) as u32 {
+        let near = if knob("SEP", 0.0) > 0.0 {0} else {1};
+        let _ = near;
+        if solver.run(&problem, &mut low, newton()) {
+            return Ok(polished(&problem, &mut solver, low));
         }
-        if knob("MARCH", 0.0) == 0.0 { return Err(Unsolved { solves: solver.solves, ..unsolved }.into()); }
-        state = march(&mut problem, &mut solver, start).ok_or(Unsolved { solves: solver.solves, ..unsolved })?;
+        let worst = solver.worst(&problem, &low);
+        unsolved.get_or_insert(worst);
+        if descend(&mut solver, &problem, &mut low, knob("DA", 80.0) as u32) {
+            return Ok(polished(&problem, &mut solver, low));
+        }
+        if descend(&mut solver, &problem, &mut high, knob("DB", 80.0) as u32) {
+            return Ok(polished(&problem, &mut solver, high));
+        }
     }
-    solver.polish(&problem, &mut state);
-    Ok(flow(&problem, &solver, state))
+    let unsolved = unsolved.unwrap_or(Unsolved { node: 0, residual: 0.0, solves: 0 });
+    Err(Unsolved { solves: solver.solves, ..unsolved }.into())
+}
+
+/// The flow of a state in balance.
+fn polished(problem: &Problem, solver: &mut Solver, mut state: State) -> Flow {
+    solver.polish(problem, &mut state);
+    flow(problem, solver, state)
 }
 
 /// Unknowns (m) of a start, within the limits of each node; those without an equation as they are given.
@@ -69,35 +82,6 @@ fn within(problem: &Problem, given: &[f64], start: &[f64]) -> Vec<f64> {
         false => given[node],
     };
     (0..start.len()).map(of).collect()
-}
-
-/// Lets the full net drain in strides, each pulled back to its start, and tries Newton's method after each.
-fn march(problem: &mut Problem, solver: &mut Solver, mut state: State) -> Option<State> {
-    let mut length = knob("FIRST", FIRST);
-    while (solver.solves as f64) < knob("MAX", 400.) && (LENGTHS[0]..LENGTHS[1]).contains(&length) {
-        let old = state.u.clone();
-        let mut next = state.clone();
-        problem.hold = Hold::Pull(old, 1.0 / length);
-        let arrived = solver.run(problem, &mut next, stride());
-        problem.hold = Hold::Nothing;
-        if !arrived {
-            if knob("LOG", 0.) > 0. {
-                println!("   stride {length:e} failed, solves {}", solver.solves);
-            }
-            length /= LONGER;
-            continue;
-        }
-        if knob("LOG", 0.) > 0. {
-            println!("   stride {length:e} ok, solves {}", solver.solves);
-        }
-        length *= LONGER;
-        state = next;
-        let mut trial = state.clone();
-        if solver.run(problem, &mut trial, crate::steady::trial()) {
-            return Some(trial);
-        }
-    }
-    None
 }
 
 /// The equations of steady flow, and the state in which each piece of the net is full up to its highest water.

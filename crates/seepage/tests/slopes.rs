@@ -240,3 +240,9 @@ fn one() {
         else { println!("GOOD {seed}"); }
     }
 }
+
+#[test]
+fn two() {
+    let joints = slope(2, 2.0, 3.0);
+    println!("{:?}", joints.net().steady(&joints.conductance(), &joints.conditions).map(|f| f.solves));
+}
