@@ -1,6 +1,6 @@
 //! The way down where Newton's method circles: its steps, shortened so that the imbalance falls.
 
-use crate::newton::{Crossing, Solver};
+use crate::newton::Solver;
 use crate::problem::{Problem, State};
 
 /// Share of a step that is tried last.
@@ -42,7 +42,6 @@ pub fn descend(solver: &mut Solver, problem: &Problem, state: &mut State, solves
                 break;
             }
         }
-        if std::env::var("DUMP").is_ok() { let now = solver.off_by(problem, &next); println!("  share {share} before {before:e} now {now:e} kink {:e}", if share < LEAST { solver.first_kink(problem, state) } else { 1.0 }); }
         std::mem::swap(state, &mut next);
     }
 }

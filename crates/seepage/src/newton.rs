@@ -13,8 +13,6 @@ pub enum Crossing {
     Empties,
     /// The one that the step gives.
     Goes,
-    /// Beyond 0 the step is scaled by the ratio of the slopes there.
-    Bends,
 }
 
 /// How far Newton's method goes.
@@ -66,18 +64,24 @@ impl Solver {
             if step == plan.steps {
                 break;
             }
-            self.linearize(problem, state);
-            if self.wake(problem, state) {
-                problem.imbalance(&state.u, &mut self.imbalance);
-                self.linearize(problem, state);
-            }
-            self.solve(problem);
+            self.direct(problem, state);
             self.go(problem, state, plan.crossing);
             if step >= plan.balances_from && !self.crossed.is_empty() {
                 balance::around(problem, state, &self.crossed, self.imbalance.least_allowed);
             }
         }
         false
+    }
+
+    /// Brings the unknowns of a state in balance within their limits, and the state into balance again where that was
+    /// due to round-off of unknowns beyond them; whether it is in balance.
+    pub fn confine(&mut self, problem: &Problem, state: &mut State, plan: Plan) -> bool {
+        for (node, u) in state.u.iter_mut().enumerate() {
+            if problem.unknown[node] {
+                *u = u.min(problem.tops[node].0).max(-problem.scales[node]);
+            }
+        }
+        self.run(problem, state, plan)
     }
 
     /// Takes one more step from a state in balance, and keeps it where it brings a better one: what is allowed at
@@ -260,7 +264,6 @@ impl Solver {
                 self.crossed.push(node as u32);
                 to = match crossing {
                     Crossing::Empties if was => -problem.scales[node],
-                    Crossing::Bends => to * self.bend(problem, state, node, was),
                     _ => to,
                 };
             }
@@ -272,11 +275,5 @@ impl Solver {
                 state.wet[node] = self.right[node] > 0.0;
             }
         }
-    }
-
-    /// Slope of a node's imbalance on its branch, over that on the other at 0.
-    fn bend(&self, problem: &Problem, state: &State, node: usize, was: bool) -> f64 {
-        let (_, other) = problem.imbalance_of(node, 0.0, !was, state);
-        if other > 0.0 { self.matrix.diagonal[node] / other } else { 1.0 }
     }
 }

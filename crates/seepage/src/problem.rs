@@ -32,8 +32,6 @@ impl State {
 pub enum Hold<'a> {
     /// Nothing: the flow is steady.
     Nothing,
-    /// A pull towards older unknowns (m), by a share of the conductances at each node; it has no meaning of its own.
-    Pull(Vec<f64>, f64),
     /// Water stored since older unknowns (m), within a time (s).
     Store(Storage<'a>, &'a [f64], f64),
 }
@@ -162,11 +160,6 @@ impl<'a> Problem<'a> {
             out.allowed[a] += at_a;
             out.allowed[b] += at_b;
         }
-        if let Hold::Pull(old, share) = &self.hold {
-            for (node, value) in out.values.iter_mut().enumerate() {
-                *value += self.sums[node] * share * (u[node] - old[node]);
-            }
-        }
         out.least_allowed = BALANCE * most;
         out.allowed.iter_mut().for_each(|allowed| *allowed = ROUND_OFF * *allowed + out.least_allowed);
     }
@@ -183,10 +176,6 @@ impl<'a> Problem<'a> {
             value += self.part(pipe, u).imbalance[at];
             slope += self.slopes(pipe, u, branch)[at][at];
         }
-        if let Hold::Pull(old, share) = &self.hold {
-            value += self.sums[node] * share * (own - old[node]);
-            slope += self.sums[node] * share;
-        }
         (value, slope)
     }
 
@@ -199,10 +188,9 @@ impl<'a> Problem<'a> {
         ROUND_OFF * sum
     }
 
-    /// Slopes that nodes have beside those of pipes: the pull, and a hold for stagnant pools.
+    /// Slope that holds a node where no pipe does, as in stagnant pools.
     pub fn own_slope(&self, node: usize) -> f64 {
-        let share = if let Hold::Pull(_, share) = &self.hold { *share } else { 0.0 };
-        self.sums[node] * (share + HOLD)
+        self.sums[node] * HOLD
     }
 
     /// Imbalances by a pipe with the unknowns of its upper and lower node.

@@ -1,72 +1,44 @@
-//! Steady flow.
+//! Steady flow: the order of attempts, and the flow that a state is.
 
 use crate::descent::descend;
 use crate::error::{Failure, Refused, Unsolved};
 use crate::law::{DELTA, pressure_head};
 use crate::net::{Condition, Flow, Net};
 use crate::newton::{Crossing, Plan, Solver};
-use crate::problem::{Hold, Problem, State};
+use crate::problem::{Problem, State};
 
-/// From the full net down.
-
-fn knob(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}
-fn cr(k: f64) -> Crossing {
-    match k as u32 {
-        0 => Crossing::Empties,
-        1 => Crossing::Goes,
-        _ => Crossing::Bends,
-    }
-}
-fn newton() -> Plan {
-    Plan { steps: knob("NS", 30.) as u32, crossing: Crossing::Empties, balances_from: knob("NB", 5.) as u32 }
-}
-fn stride() -> Plan {
-    Plan { steps: knob("SS", 20.) as u32, crossing: cr(knob("SC", 2.)), balances_from: knob("SB", 2.) as u32 }
-}
-fn trial() -> Plan {
-    Plan { steps: knob("TS", 6.) as u32, crossing: Crossing::Empties, balances_from: knob("TB", 2.) as u32 }
-}
-
-/// One stride of the march.
-const STRIDE: Plan = Plan { steps: 20, crossing: Crossing::Bends, balances_from: 2 };
-/// A trial of Newton's method after a stride.
-const TRIAL: Plan = Plan { steps: 6, crossing: Crossing::Empties, balances_from: 2 };
-/// Length of the first stride: the pull of its start is the conductances at a node divided by it.
-const FIRST: f64 = 1e5;
-/// Factor of the lengths of strides, after one that has led somewhere; its inverse after one that has not.
-const LONGER: f64 = 8.0;
-/// Lengths within which strides make sense.
-const LENGTHS: [f64; 2] = [1e-3, 1e15];
-/// Solves after which the march ends.
-const SOLVES_MAX: u32 = 400;
+/// Newton's method, each time.
+const NEWTON: Plan = Plan { steps: 20, crossing: Crossing::Empties, balances_from: 5 };
+/// Solves of a descent, each time.
+const DESCENT: u32 = 80;
+/// Solves after which no further attempt begins.
+const SOLVES_MAX: u32 = 500;
 
 /// Steady flow in a net, from a start or from full.
+///
+/// Newton's method, which empties nodes that lose their pressure, takes about ten steps. Where it circles, two descents
+/// go on by turns: one from where it has come to, with Newton's method again after it, and one from the start.
 pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
     let (problem, full) = problem(net, conductance, conditions)?;
     let mut solver = Solver::of(net);
     let start = start.map_or_else(|| full.clone(), |start| within(&problem, &full, start));
     let start = State::of(start.iter().enumerate().map(|(node, &u)| problem.scaled(node, u)).collect());
     let (mut high, mut low) = (start.clone(), start);
-    let mut unsolved = None;
-    while solver.solves < knob("MAX", 500.0) as u32 {
-        let near = if knob("SEP", 0.0) > 0.0 {0} else {1};
-        let _ = near;
-        if solver.run(&problem, &mut low, newton()) {
+    let mut first = None;
+    while solver.solves < SOLVES_MAX {
+        if solver.run(&problem, &mut low, NEWTON) {
             return Ok(polished(&problem, &mut solver, low));
         }
-        let worst = solver.worst(&problem, &low);
-        unsolved.get_or_insert(worst);
-        if descend(&mut solver, &problem, &mut low, knob("DA", 80.0) as u32) {
-            return Ok(polished(&problem, &mut solver, low));
-        }
-        if descend(&mut solver, &problem, &mut high, knob("DB", 80.0) as u32) {
-            return Ok(polished(&problem, &mut solver, high));
+        first.get_or_insert(solver.worst(&problem, &low));
+        for state in [&mut low, &mut high] {
+            if descend(&mut solver, &problem, state, DESCENT) && solver.confine(&problem, state, NEWTON) {
+                return Ok(polished(&problem, &mut solver, state.clone()));
+            }
         }
     }
-    let unsolved = unsolved.unwrap_or(Unsolved { node: 0, residual: 0.0, solves: 0 });
-    Err(Unsolved { solves: solver.solves, ..unsolved }.into())
+    let worst = solver.worst(&problem, &high);
+    let found = first.filter(|first| first.residual.abs() < worst.residual.abs()).unwrap_or(worst);
+    Err(Unsolved { solves: solver.solves, ..found }.into())
 }
 
 /// The flow of a state in balance.

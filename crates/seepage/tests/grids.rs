@@ -4,11 +4,7 @@ use crate::parts::{Joints, Random, grid, held};
 
 /// A grid of 61 x 31 nodes between waters 25 and 8 m deep, with apertures of a scatter.
 fn random_grid(seed: u64, scatter: f64) -> Joints {
-    random_grid_of(seed, scatter, 1.0)
-}
-
-fn random_grid_of(seed: u64, scatter: f64, fine: f64) -> Joints {
-    let (mut joints, [columns, rows]) = grid([60.0, 30.0], fine, 1e-4);
+    let (mut joints, [columns, rows]) = grid([60.0, 30.0], 1.0, 1e-4);
     let mut random = Random::new(seed);
     for apertures in &mut joints.apertures {
         *apertures = [(1e-4 * (scatter * random.normal()).exp()).clamp(1e-6, 2e-3); 2];
@@ -39,22 +35,4 @@ fn two_runs_have_the_same_bits() {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&first.u), bits(&second.u));
     assert_eq!(bits(&first.flow), bits(&second.flow));
-}
-
-#[test]
-fn experiment_grid() {
-    for scatter in [0.0, 1.0, 2.0, 4.0] {
-        for (seeds, fine) in [(12, 1.0), (4, 0.5)] {
-            let start = std::time::Instant::now();
-            let (mut solves, mut most, mut bad) = (0, 0, 0);
-            for seed in 0..seeds {
-                let joints = random_grid_of(seed, scatter, fine);
-                match joints.net().steady(&joints.conductance(), &joints.conditions) {
-                    Ok(flow) => { solves += flow.solves; most = most.max(flow.solves); }
-                    Err(e) => { println!("XX {e}"); bad += 1; }
-                }
-            }
-            println!("XX grid {fine} scatter {scatter}: {solves} solves of {seeds}, {most} at most, {bad} bad {:?}", start.elapsed());
-        }
-    }
 }
