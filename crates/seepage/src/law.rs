@@ -46,6 +46,13 @@ pub fn volume(e0: f64, e1: f64, length: f64, storage: f64) -> f64 {
     length * (0.5 * (e0 + e1) + storage)
 }
 
+/// Water (m²) in a pipe with a `volume` (m²), a `compliance` (m² per m) and a `drop` (m), of the unknowns of its upper
+/// and lower node (m): it is full below a free surface, and has the film of its upper node above.
+pub fn stored(volume: f64, compliance: f64, drop: f64, [upper, lower]: [f64; 2]) -> f64 {
+    let (full, film) = (wet_share(pressure_head(lower), drop), filling(upper));
+    volume * (full * (1.0 - film) + film) + 0.5 * compliance * (pressure_head(upper) + pressure_head(lower))
+}
+
 /// Flow (m²/s) down a pipe with a `conductance` (m²/s per m) and a `drop` (m) from its upper node with the unknown
 /// `upper` (m) to its lower one with `lower` (m); negative where it flows up.
 ///

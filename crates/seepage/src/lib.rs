@@ -10,6 +10,7 @@
 //!
 //! Results are serial sums in a fixed order without fused operations: they have the same bits on any machine.
 
+mod advance;
 mod balance;
 mod descent;
 mod error;

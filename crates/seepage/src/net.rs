@@ -1,6 +1,7 @@
 //! The net, the conditions at its nodes and the flow in it.
 
 use crate::error::{Failure, Refused};
+use crate::law;
 use crate::lu::Symbolic;
 use crate::pieces;
 
@@ -147,6 +148,55 @@ impl Net {
         length("start", start.len(), self.heights.len())?;
         finite("start", start)?;
         crate::steady::solve(self, conductance, conditions, Some(start))
+    }
+
+    /// Flow at the end of an implicit step of a `time` (s) from unknowns `old` (m) at its start, as those of another
+    /// flow. Conditions hold all through the step. All nodes take part, those of pieces without a condition too.
+    ///
+    /// The result has the unknowns at the end; its flow, inflow and run-off are means over the step, so that what
+    /// enters is what the pipes hold more, see [`Net::stored`]. At nodes with a head or air the water that the ends of
+    /// pipes take there is part of the inflow. A step that is too long for the solver is done in halves.
+    ///
+    /// # Errors
+    /// [`Refused`] for lists of a wrong length, values that are not finite, negative conductances, rain or storage, and
+    /// a time that is not positive; [`crate::Unsolved`] where parts of 1/256 are too long still.
+    pub fn advance(
+        &self,
+        conductance: &[f64],
+        conditions: &[Condition],
+        storage: Storage,
+        old: &[f64],
+        time: f64,
+    ) -> Result<Flow, Failure> {
+        self.check(conductance, conditions)?;
+        self.check_stored(&storage, old)?;
+        if !(time.is_finite() && time > 0.0) {
+            return Err(Refused::Value { name: "time", index: 0, value: time }.into());
+        }
+        Ok(crate::advance::advance(self, conductance, conditions, storage, (old, time))?)
+    }
+
+    /// Water (m²) in each pipe, of unknowns `u` (m) of the nodes: full below a free surface, a film above it.
+    ///
+    /// # Errors
+    /// Lists of a wrong length, values that are not finite, and negative storage.
+    pub fn stored(&self, storage: Storage, u: &[f64]) -> Result<Vec<f64>, Refused> {
+        self.check_stored(&storage, u)?;
+        let of = |(pipe, &[upper, lower]): (usize, &[u32; 2])| {
+            let (upper, lower) = (u[upper as usize], u[lower as usize]);
+            law::stored(storage.volume[pipe], storage.compliance[pipe], self.drops[pipe], [upper, lower])
+        };
+        Ok(self.ends.iter().enumerate().map(of).collect())
+    }
+
+    /// Whether storage and unknowns have the right length and values that make sense.
+    fn check_stored(&self, storage: &Storage, u: &[f64]) -> Result<(), Refused> {
+        length("volume", storage.volume.len(), self.pipes.len())?;
+        length("compliance", storage.compliance.len(), self.pipes.len())?;
+        length("unknowns", u.len(), self.heights.len())?;
+        not_negative("volume", storage.volume)?;
+        not_negative("compliance", storage.compliance)?;
+        finite("unknowns", u)
     }
 
     /// Lists of the right length with finite values, and none negative that must not be.

@@ -33,7 +33,7 @@ pub enum Hold<'a> {
     /// Nothing: the flow is steady.
     Nothing,
     /// Water stored since older unknowns (m), within a time (s).
-    Store(Storage<'a>, &'a [f64], f64),
+    Store(Storage<'a>, Vec<f64>, f64),
 }
 
 /// The equations.
