@@ -1,6 +1,6 @@
 //! The equations of a net: imbalances of nodes and their slopes.
 
-use crate::law::{self, DELTA, pressure_head};
+use crate::law::{self, DELTA, LEVEL, pressure_head};
 use crate::net::{Condition, Net, Storage};
 
 /// Share of the sum of conductances at a node that holds it where no equation does.
@@ -55,8 +55,8 @@ pub struct Problem<'a> {
     pub scales: Vec<f64>,
 }
 
-/// Pressure head (m) and filling of the upper node of a pipe, and pressure head of the lower one.
-type Waters = ((f64, f64), f64);
+/// Pressure head (m) and filling of the upper and of the lower node of a pipe.
+type Waters = [(f64, f64); 2];
 
 /// What a pipe, or a node's own equation, adds to imbalances.
 #[derive(Debug, Clone, Copy)]
@@ -123,9 +123,9 @@ impl<'a> Problem<'a> {
     }
 
     /// Waters at the ends of a pipe, of the unknowns of its upper and lower node.
-    fn waters(&self, pipe: usize, [upper, lower]: [f64; 2]) -> Waters {
-        let filling = self.filling(self.net.ends[pipe][0] as usize, upper);
-        ((pressure_head(upper), filling), pressure_head(lower))
+    fn waters(&self, pipe: usize, u: [f64; 2]) -> Waters {
+        let ends = self.net.ends[pipe];
+        [0, 1].map(|k| (pressure_head(u[k]), self.filling(ends[k] as usize, u[k])))
     }
 
     /// Waters at the ends of a pipe.
@@ -135,8 +135,8 @@ impl<'a> Problem<'a> {
 
     /// Flow (m²/s) down a pipe, of the unknowns of its upper and lower node.
     fn flow_between(&self, pipe: usize, u: [f64; 2]) -> f64 {
-        let (upper, lower) = self.waters(pipe, u);
-        law::flow_of(self.conductance[pipe], self.net.drops[pipe], upper, lower)
+        let upper = (pressure_head(u[0]), self.filling(self.net.ends[pipe][0] as usize, u[0]));
+        law::flow_of(self.conductance[pipe], self.net.drops[pipe], upper, pressure_head(u[1]))
     }
 
     /// Flow (m²/s) down each pipe.
@@ -221,7 +221,13 @@ impl<'a> Problem<'a> {
         let mut slopes = [[by_upper, by_lower], [-by_upper, -by_lower]];
         if let Hold::Store(storage, old, time) = &self.hold {
             let waters = [self.waters(pipe, u), self.waters_of(pipe, old)];
-            let ([aa, ab], bb) = stored_slopes(storage, pipe, drop, waters, (wet, self.scales[a]));
+            let ([aa, ab], bb) = stored_slopes(
+                storage,
+                pipe,
+                drop,
+                waters,
+                (wet, [self.scales[a], self.scales[self.net.ends[pipe][1] as usize]]),
+            );
             slopes[0][0] += aa / time;
             slopes[0][1] += ab / time;
             slopes[1][1] += bb / time;
@@ -257,28 +263,33 @@ fn scales(net: &Net, conductance: &[f64]) -> Vec<f64> {
 /// above it the film stands in it. The two add up to what it holds more.
 fn stored(storage: &Storage, pipe: usize, drop: f64, now: Waters, was: Waters) -> [f64; 2] {
     let (volume, half) = (storage.volume[pipe], 0.5 * storage.compliance[pipe]);
-    let ((upper, filled), lower) = now;
-    let ((was_upper, was_filled), was_lower) = was;
-    let (full, was_full) = (law::wet_share(lower, drop), law::wet_share(was_lower, drop));
-    let top = volume * (1.0 - full) * (filled - was_filled);
-    let foot = volume * (1.0 - was_filled) * (full - was_full);
-    [top + half * (upper - was_upper), foot + half * (lower - was_lower)]
+    let filled = [0, 1].map(|k| now[k].1 - was[k].1);
+    let [top, foot] = if drop < LEVEL {
+        filled.map(|filled| 0.5 * volume * filled)
+    } else {
+        let (full, was_full) = (law::wet_share(now[1].0, drop), law::wet_share(was[1].0, drop));
+        [volume * (1.0 - full) * filled[0], volume * (1.0 - was[0].1) * (full - was_full)]
+    };
+    [top + half * (now[0].0 - was[0].0), foot + half * (now[1].0 - was[1].0)]
 }
 
 /// Slopes of what a pipe books: of the upper node by both unknowns, of the lower one by its own. `wet` says which ends
-/// have pressure, and the scale is that of the upper one.
+/// have pressure; scales are those of both.
 fn stored_slopes(
     storage: &Storage,
     pipe: usize,
     drop: f64,
     [now, was]: [Waters; 2],
-    (wet, scale): ([bool; 2], f64),
+    (wet, scales): ([bool; 2], [f64; 2]),
 ) -> ([f64; 2], f64) {
     let (volume, half) = (storage.volume[pipe], 0.5 * storage.compliance[pipe]);
-    let (filled, was_filled) = (now.0.1, was.0.1);
-    let fills = if wet[1] && now.1 < drop { 1.0 / drop } else { 0.0 };
-    let by_film = if wet[0] { 0.0 } else { volume * (1.0 - law::wet_share(now.1, drop)) / scale };
+    let by_film = [0, 1].map(|k| if wet[k] { 0.0 } else { volume / scales[k] });
     let pressed = wet.map(|wet| if wet { half } else { 0.0 });
-    let upper = [by_film + pressed[0], -volume * (filled - was_filled) * fills];
-    (upper, volume * (1.0 - was_filled) * fills + pressed[1])
+    if drop < LEVEL {
+        return ([0.5 * by_film[0] + pressed[0], 0.0], 0.5 * by_film[1] + pressed[1]);
+    }
+    let fills = if wet[1] && now[1].0 < drop { 1.0 / drop } else { 0.0 };
+    let empty = 1.0 - law::wet_share(now[1].0, drop);
+    let upper = [by_film[0] * empty + pressed[0], -volume * (now[0].1 - was[0].1) * fills];
+    (upper, volume * (1.0 - was[0].1) * fills + pressed[1])
 }
