@@ -1,4 +1,4 @@
-//! What one pipe conducts and holds.
+//! Laws of one pipe: its conductance, its flow, the water in it.
 
 /// Scale of the unknown of a node below 0 (m): at `-DELTA` the pipes that lead down from it are dry. Results do not
 /// depend on it, since there is no pressure in films.

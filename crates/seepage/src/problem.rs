@@ -27,7 +27,7 @@ impl State {
     }
 }
 
-/// What holds nodes to an older state.
+/// Hold of nodes to an older state.
 #[derive(Debug)]
 pub enum Hold<'a> {
     /// Nothing: the flow is steady.
@@ -58,10 +58,10 @@ pub struct Problem<'a> {
 /// Pressure head (m) and filling of the upper and of the lower node of a pipe.
 type Waters = [(f64, f64); 2];
 
-/// What a pipe, or a node's own equation, adds to imbalances.
+/// Terms of a pipe.
 #[derive(Debug, Clone, Copy)]
 struct Part {
-    /// To those of the upper and the lower node (m²/s).
+    /// Parts of the imbalances of its upper and its lower node (m²/s).
     imbalance: [f64; 2],
     /// Flow down the pipe (m²/s).
     flow: f64,
@@ -72,7 +72,7 @@ struct Part {
 pub struct Imbalance {
     pub values: Vec<f64>,
     pub allowed: Vec<f64>,
-    /// What is allowed everywhere, apart from round-off.
+    /// Imbalance that is allowed everywhere (m²/s), apart from round-off.
     pub least_allowed: f64,
 }
 

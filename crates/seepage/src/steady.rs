@@ -83,7 +83,7 @@ fn problem<'a>(
     Ok((problem, full))
 }
 
-/// What gives water to a piece of a net.
+/// Sources of water of a piece of a net.
 #[derive(Debug, Clone, Copy)]
 struct Water {
     /// Highest head, rain or, where there is a source, node (m).
