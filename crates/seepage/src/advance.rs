@@ -1,7 +1,7 @@
 //! Implicit steps in time.
 
 use crate::descent::descend;
-use crate::error::Unsolved;
+use crate::error::{Failure, Refused, Unsolved};
 use crate::net::{Condition, Flow, Net, Storage};
 use crate::newton::{Crossing, Plan, Solver};
 use crate::problem::{Hold, Problem, State};
@@ -13,6 +13,34 @@ const NEWTON: Plan = Plan { steps: 15, crossing: Crossing::Goes, balances_from: 
 const DESCENT: u32 = 40;
 /// How often a step is halved at most.
 const DEPTH_MAX: u32 = 8;
+
+impl Net {
+    /// Flow at the end of an implicit step of a `time` (s) from unknowns `old` (m) at its start, as those of another
+    /// flow. Conditions hold all through the step. All nodes take part, those of pieces without a condition too.
+    ///
+    /// The result has the unknowns at the end; its flow, inflow and run-off are means over the step, so that what
+    /// enters is what the pipes hold more, see [`Net::stored`]. At nodes with a head or air the water that the ends of
+    /// pipes take there is part of the inflow. A step that is too long for the solver is done in halves.
+    ///
+    /// # Errors
+    /// [`Refused`] for lists of a wrong length, values that are not finite, negative conductances, rain or storage, and
+    /// a time that is not positive; [`Unsolved`] where parts of 1/256 are too long still.
+    pub fn advance(
+        &self,
+        conductance: &[f64],
+        conditions: &[Condition],
+        storage: Storage,
+        old: &[f64],
+        time: f64,
+    ) -> Result<Flow, Failure> {
+        self.check(conductance, conditions)?;
+        self.check_stored(&storage, old)?;
+        if !(time.is_finite() && time > 0.0) {
+            return Err(Refused::Value { name: "time", index: 0, value: time }.into());
+        }
+        Ok(advance(self, conductance, conditions, storage, (old, time))?)
+    }
+}
 
 /// A step in time (s), in halves where it is too long to be solved.
 struct Step<'a, 'b> {
@@ -26,7 +54,7 @@ struct Step<'a, 'b> {
 }
 
 /// Flow at the end of a step of a `time` (s), with its means over the step, from unknowns of its start (m).
-pub fn advance(
+fn advance(
     net: &Net,
     conductance: &[f64],
     conditions: &[Condition],

@@ -13,8 +13,9 @@ const BEYOND: f64 = 1e-6;
 /// Goes from a state to one in balance within so many solves; whether it has come there.
 ///
 /// Imbalances are linear between kinks, so that a step of Newton's method lowers all of them alike up to the first
-/// kink on its way. Since the whole is monotone, the way goes on from kink to kink to the flow (Katzenelson 1965). A
-/// step goes further as long as the sum of imbalances falls.
+/// kink on its way. Since the whole is monotone, the way goes on from kink to kink to the flow (Katzenelson, An
+/// algorithm for solving nonlinear resistor networks, 1965). A step goes further as long as the sum of imbalances
+/// falls.
 pub fn descend(solver: &mut Solver, problem: &Problem, state: &mut State, solves: u32) -> bool {
     let end = solver.solves + solves;
     let mut next = state.clone();

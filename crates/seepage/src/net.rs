@@ -1,6 +1,6 @@
 //! The net, the conditions at its nodes and the flow in it.
 
-use crate::error::{Failure, Refused};
+use crate::error::Refused;
 use crate::law;
 use crate::lu::Symbolic;
 use crate::pieces;
@@ -10,8 +10,8 @@ use crate::pieces;
 pub enum Condition {
     /// As much flows out as flows in, and as the source gives.
     Free {
-        /// Water that a source gives (m²/s); negative: that a pump takes. A pump whose node runs dry takes only what arrives
-        /// there, see [`Flow::inflow`].
+        /// Water that a source gives (m²/s); negative: that a pump takes. A pump whose node runs dry takes only what
+        /// arrives there, see [`Flow::inflow`].
         source: f64,
     },
     /// The head is given (m, a height); where that is below the node, it is open to the air.
@@ -122,61 +122,6 @@ impl Net {
         &self.around[self.first[node] as usize..self.first[node + 1] as usize]
     }
 
-    /// Steady flow with a `conductance` (m²/s per m of head; 0: closed) of each pipe and a condition of each node.
-    ///
-    /// The water comes down from a full net. A stagnant pool, which hangs in a dead end below dry joints and has
-    /// neither inflow nor outlet, has no level of its own in a steady state: it is left as full as it was, up to its
-    /// brim, which is safe for the stability of a slope. Heads and flows where water moves do not depend on it. Pieces
-    /// of the net without a head, air or rain are dry, and pumps there take nothing.
-    ///
-    /// # Errors
-    /// [`Refused`] for lists of a wrong length, values that are not finite, negative conductances or rain, and sources
-    /// in pieces that water cannot leave; [`crate::Unsolved`] where 500 solves do not lead to a flow. Several hundred
-    /// random nets with contrasts of conductance up to 8·10⁹ took less than 200, most of them about ten.
-    pub fn steady(&self, conductance: &[f64], conditions: &[Condition]) -> Result<Flow, Failure> {
-        self.check(conductance, conditions)?;
-        crate::steady::solve(self, conductance, conditions, None)
-    }
-
-    /// Steady flow as [`Net::steady`] gives it, but from unknowns `start` (m) of the nodes, as those of another flow,
-    /// in place of a full net. Water that moves is the same; a stagnant pool keeps the level that it starts with or
-    /// gets on the way. From dry it takes more solves.
-    ///
-    /// # Errors
-    /// Those of [`Net::steady`], and [`Refused`] for a start of a wrong length or with a value that is not finite.
-    pub fn steady_from(&self, conductance: &[f64], conditions: &[Condition], start: &[f64]) -> Result<Flow, Failure> {
-        self.check(conductance, conditions)?;
-        length("start", start.len(), self.heights.len())?;
-        finite("start", start)?;
-        crate::steady::solve(self, conductance, conditions, Some(start))
-    }
-
-    /// Flow at the end of an implicit step of a `time` (s) from unknowns `old` (m) at its start, as those of another
-    /// flow. Conditions hold all through the step. All nodes take part, those of pieces without a condition too.
-    ///
-    /// The result has the unknowns at the end; its flow, inflow and run-off are means over the step, so that what
-    /// enters is what the pipes hold more, see [`Net::stored`]. At nodes with a head or air the water that the ends of
-    /// pipes take there is part of the inflow. A step that is too long for the solver is done in halves.
-    ///
-    /// # Errors
-    /// [`Refused`] for lists of a wrong length, values that are not finite, negative conductances, rain or storage, and
-    /// a time that is not positive; [`crate::Unsolved`] where parts of 1/256 are too long still.
-    pub fn advance(
-        &self,
-        conductance: &[f64],
-        conditions: &[Condition],
-        storage: Storage,
-        old: &[f64],
-        time: f64,
-    ) -> Result<Flow, Failure> {
-        self.check(conductance, conditions)?;
-        self.check_stored(&storage, old)?;
-        if !(time.is_finite() && time > 0.0) {
-            return Err(Refused::Value { name: "time", index: 0, value: time }.into());
-        }
-        Ok(crate::advance::advance(self, conductance, conditions, storage, (old, time))?)
-    }
-
     /// Water (m²) in each pipe, of unknowns `u` (m) of the nodes: full below a free surface, a film above it.
     ///
     /// # Errors
@@ -191,7 +136,7 @@ impl Net {
     }
 
     /// Whether storage and unknowns have the right length and values that make sense.
-    fn check_stored(&self, storage: &Storage, u: &[f64]) -> Result<(), Refused> {
+    pub(crate) fn check_stored(&self, storage: &Storage, u: &[f64]) -> Result<(), Refused> {
         length("volume", storage.volume.len(), self.pipes.len())?;
         length("compliance", storage.compliance.len(), self.pipes.len())?;
         length("unknowns", u.len(), self.heights.len())?;

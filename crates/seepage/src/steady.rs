@@ -3,7 +3,7 @@
 use crate::descent::descend;
 use crate::error::{Failure, Refused, Unsolved};
 use crate::law::{DELTA, pressure_head};
-use crate::net::{Condition, Flow, Net};
+use crate::net::{Condition, Flow, Net, finite, length};
 use crate::newton::{Crossing, Plan, Solver};
 use crate::problem::{Problem, State};
 
@@ -14,11 +14,42 @@ const DESCENT: u32 = 80;
 /// Solves after which no further attempt begins.
 const SOLVES_MAX: u32 = 500;
 
+impl Net {
+    /// Steady flow with a `conductance` (m²/s per m of head; 0: closed) of each pipe and a condition of each node.
+    ///
+    /// The water comes down from a full net. A stagnant pool, which hangs in a dead end below dry joints and has
+    /// neither inflow nor outlet, has no level of its own in a steady state: it is left as full as it was, up to its
+    /// brim, which is safe for the stability of a slope. Heads and flows where water moves do not depend on it. Pieces
+    /// of the net without a head, air or rain are dry, and pumps there take nothing.
+    ///
+    /// # Errors
+    /// [`Refused`] for lists of a wrong length, values that are not finite, negative conductances or rain, and sources
+    /// in pieces that water cannot leave; [`Unsolved`] where 500 solves do not lead to a flow. Several hundred
+    /// random nets with contrasts of conductance up to 8·10⁹ took less than 200, most of them about ten.
+    pub fn steady(&self, conductance: &[f64], conditions: &[Condition]) -> Result<Flow, Failure> {
+        self.check(conductance, conditions)?;
+        solve(self, conductance, conditions, None)
+    }
+
+    /// Steady flow as [`Net::steady`] gives it, but from unknowns `start` (m) of the nodes, as those of another flow,
+    /// in place of a full net. Water that moves is the same; a stagnant pool keeps the level that it starts with or
+    /// gets on the way. From dry it takes more solves.
+    ///
+    /// # Errors
+    /// Those of [`Net::steady`], and [`Refused`] for a start of a wrong length or with a value that is not finite.
+    pub fn steady_from(&self, conductance: &[f64], conditions: &[Condition], start: &[f64]) -> Result<Flow, Failure> {
+        self.check(conductance, conditions)?;
+        length("start", start.len(), self.heights.len())?;
+        finite("start", start)?;
+        solve(self, conductance, conditions, Some(start))
+    }
+}
+
 /// Steady flow in a net, from a start or from full.
 ///
 /// Newton's method, which empties nodes that lose their pressure, takes about ten steps. Where it circles, two descents
 /// go on by turns: one from where it has come to, with Newton's method again after it, and one from the start.
-pub fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
+fn solve(net: &Net, conductance: &[f64], conditions: &[Condition], start: Option<&[f64]>) -> Result<Flow, Failure> {
     let (problem, full) = problem(net, conductance, conditions)?;
     let mut solver = Solver::of(net);
     let start = start.map_or_else(|| full.clone(), |start| within(&problem, &full, start));
