@@ -39,7 +39,7 @@ impl Net {
     /// Those of [`Net::steady`], and [`Refused`] for a start of a wrong length or with a value that is not finite.
     pub fn steady_from(&self, conductance: &[f64], conditions: &[Condition], start: &[f64]) -> Result<Flow, Failure> {
         self.check(conductance, conditions)?;
-        length("start", start.len(), self.heights.len())?;
+        length("start", start.len(), self.heights().len())?;
         finite("start", start)?;
         solve(self, conductance, conditions, Some(start))
     }
