@@ -1,6 +1,5 @@
 //! Nodes balanced one by one: where many change between pressure and film at once, Newton's method circles.
 
-use crate::law::DELTA;
 use crate::problem::{Problem, State};
 
 /// Most sweeps over the nodes.
@@ -34,16 +33,16 @@ fn near(problem: &Problem, crossed: &[u32]) -> Vec<u32> {
     let mut seen = vec![false; net.heights().len()];
     let mut nodes = crossed.to_vec();
     nodes.iter().for_each(|&node| seen[node as usize] = true);
-    let mut from = 0;
+    let mut reached = 0;
     for _ in 0..2 {
-        for at in from..nodes.len() {
+        let from = std::mem::replace(&mut reached, nodes.len());
+        for at in from..reached {
             for &pipe in net.pipes_of(nodes[at] as usize) {
                 if problem.conductance[pipe as usize] > 0.0 {
                     let ends = net.ends[pipe as usize];
                     nodes.extend(ends.into_iter().filter(|&end| !std::mem::replace(&mut seen[end as usize], true)));
                 }
             }
-            from = at + 1;
         }
     }
     nodes.retain(|&node| problem.unknown[node as usize]);
@@ -62,7 +61,7 @@ fn root(problem: &Problem, state: &State, node: usize, least: f64) -> f64 {
     if value.abs() <= allowed {
         return u;
     }
-    let (mut low, mut high) = (-DELTA, u);
+    let (mut low, mut high) = (-problem.scales[node], u);
     if value > 0.0 {
         if at(low).0 >= -allowed {
             return low;

@@ -1,8 +1,11 @@
-//! What one pipe conducts and holds.
+//! Laws of one pipe: its conductance, its flow, the water in it.
 
 /// Scale of the unknown of a node below 0 (m): at `-DELTA` the pipes that lead down from it are dry. Results do not
 /// depend on it, since there is no pressure in films.
 pub const DELTA: f64 = 1.0;
+
+/// Drop (m) below which a pipe fills as a level one: a free surface would run along it at once.
+pub const LEVEL: f64 = 1e-3;
 
 /// Conductance (m²/s per m of head) of a joint between parallel faces whose aperture goes linearly from `e0` to `e1`
 /// (m) over a `length` (m): the cubic law γ/(12 μ L) · 2 e0² e1²/(e0 + e1), exact for pipes in series.
@@ -46,11 +49,31 @@ pub fn volume(e0: f64, e1: f64, length: f64, storage: f64) -> f64 {
     length * (0.5 * (e0 + e1) + storage)
 }
 
+/// Water (m²) in a pipe with a `volume` (m²), a `compliance` (m² per m) and a `drop` (m), of the unknowns of its upper
+/// and lower node (m): it is full below a free surface, and has the film of its upper node above. A pipe that drops by
+/// less than [`LEVEL`] has half of its volume at each end, filled as films from there are.
+pub fn stored(volume: f64, compliance: f64, drop: f64, [upper, lower]: [f64; 2]) -> f64 {
+    let film = filling(upper);
+    let share = if drop < LEVEL {
+        0.5 * (film + filling(lower))
+    } else {
+        let full = wet_share(pressure_head(lower), drop);
+        full * (1.0 - film) + film
+    };
+    volume * share + 0.5 * compliance * (pressure_head(upper) + pressure_head(lower))
+}
+
 /// Flow (m²/s) down a pipe with a `conductance` (m²/s per m) and a `drop` (m) from its upper node with the unknown
 /// `upper` (m) to its lower one with `lower` (m); negative where it flows up.
 ///
 /// Full, it is the conductance times the difference of heads. Where a free surface lies in it, all that falls to the
 /// surface as a film goes on. Dry, a film falls with a unit gradient.
 pub fn flow(conductance: f64, drop: f64, upper: f64, lower: f64) -> f64 {
-    conductance * (pressure_head(upper) + (filling(upper) * drop).min(drop - pressure_head(lower)))
+    flow_of(conductance, drop, (pressure_head(upper), filling(upper)), pressure_head(lower))
+}
+
+/// Flow (m²/s) as [`flow`] gives it, of pressure head (m) and filling of the upper node and pressure head (m) of the
+/// lower.
+pub(crate) fn flow_of(conductance: f64, drop: f64, (pressure, filling): (f64, f64), lower: f64) -> f64 {
+    conductance * (pressure + (filling * drop).min(drop - lower))
 }

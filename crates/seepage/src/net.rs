@@ -1,16 +1,17 @@
 //! The net, the conditions at its nodes and the flow in it.
 
-use crate::error::{Failure, Refused};
+use crate::error::Refused;
+use crate::law;
 use crate::lu::Symbolic;
 use crate::pieces;
 
-/// What holds at a node.
+/// Condition at a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
     /// As much flows out as flows in, and as the source gives.
     Free {
-        /// What a source gives (m²/s); negative: what a pump takes. A pump whose node runs dry takes only what arrives
-        /// there, see [`Flow::inflow`].
+        /// Water that a source gives (m²/s); negative: that a pump takes. A pump whose node runs dry takes only what
+        /// arrives there, see [`Flow::inflow`].
         source: f64,
     },
     /// The head is given (m, a height); where that is below the node, it is open to the air.
@@ -22,12 +23,12 @@ pub enum Condition {
     Air,
     /// Open to the air, and water is offered; what the net does not take runs off, see [`Flow::run_off`].
     Rain {
-        /// What is offered (m²/s, 0 or more): rain on the ground around the node.
+        /// Water that is offered (m²/s, 0 or more): rain on the ground around the node.
         rate: f64,
     },
 }
 
-/// What pipes hold, for steps in time.
+/// Room for water in pipes, for steps in time.
 #[derive(Debug, Clone, Copy)]
 pub struct Storage<'a> {
     /// Volume (m²) of each pipe, see [`crate::law::volume`].
@@ -60,7 +61,7 @@ pub struct Flow {
 
 /// Nodes with heights, and pipes between two nodes each: the topology, and the order in which systems are solved.
 ///
-/// What pipes conduct and what holds at nodes is given with each solve, so that a net is built once for a model.
+/// Conductances and conditions are given with each solve, so that a net is built once for a model.
 #[derive(Debug, Clone)]
 pub struct Net {
     heights: Vec<f64>,
@@ -121,32 +122,27 @@ impl Net {
         &self.around[self.first[node] as usize..self.first[node + 1] as usize]
     }
 
-    /// Steady flow with a `conductance` (m²/s per m of head; 0: closed) of each pipe and a condition of each node.
-    ///
-    /// The water comes down from a full net. A stagnant pool, which hangs in a dead end below dry joints and has neither
-    /// inflow nor outlet, has no level of its own in a steady state: it is left as full as it was, up to its brim, which
-    /// is safe. Pieces of the net without a head, air or rain are dry, and pumps there take nothing.
+    /// Water (m²) in each pipe, of unknowns `u` (m) of the nodes: full below a free surface, a film above it.
     ///
     /// # Errors
-    /// [`Refused`] for lists of a wrong length, values that are not finite, negative conductances or rain, and sources
-    /// in pieces that water cannot leave; [`crate::Unsolved`] where the solver ends without a flow, as with contrasts
-    /// of 10¹⁰ in dense nets.
-    pub fn steady(&self, conductance: &[f64], conditions: &[Condition]) -> Result<Flow, Failure> {
-        self.check(conductance, conditions)?;
-        crate::steady::solve(self, conductance, conditions, None)
+    /// Lists of a wrong length, values that are not finite, and negative storage.
+    pub fn stored(&self, storage: Storage, u: &[f64]) -> Result<Vec<f64>, Refused> {
+        self.check_stored(&storage, u)?;
+        let of = |(pipe, &[upper, lower]): (usize, &[u32; 2])| {
+            let (upper, lower) = (u[upper as usize], u[lower as usize]);
+            law::stored(storage.volume[pipe], storage.compliance[pipe], self.drops[pipe], [upper, lower])
+        };
+        Ok(self.ends.iter().enumerate().map(of).collect())
     }
 
-    /// Steady flow as [`Net::steady`] gives it, but from unknowns `start` (m) of the nodes, as those of another flow,
-    /// in place of a full net. Water that moves is the same; a stagnant pool keeps the level that it starts with or
-    /// gets on the way. From dry it takes more solves.
-    ///
-    /// # Errors
-    /// Those of [`Net::steady`], and [`Refused`] for a start of a wrong length or with a value that is not finite.
-    pub fn steady_from(&self, conductance: &[f64], conditions: &[Condition], start: &[f64]) -> Result<Flow, Failure> {
-        self.check(conductance, conditions)?;
-        length("start", start.len(), self.heights.len())?;
-        finite("start", start)?;
-        crate::steady::solve(self, conductance, conditions, Some(start))
+    /// Whether storage and unknowns have the right length and values that make sense.
+    pub(crate) fn check_stored(&self, storage: &Storage, u: &[f64]) -> Result<(), Refused> {
+        length("volume", storage.volume.len(), self.pipes.len())?;
+        length("compliance", storage.compliance.len(), self.pipes.len())?;
+        length("unknowns", u.len(), self.heights.len())?;
+        not_negative("volume", storage.volume)?;
+        not_negative("compliance", storage.compliance)?;
+        finite("unknowns", u)
     }
 
     /// Lists of the right length with finite values, and none negative that must not be.

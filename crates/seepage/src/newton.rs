@@ -2,7 +2,6 @@
 
 use crate::balance;
 use crate::error::Unsolved;
-use crate::law::DELTA;
 use crate::lu::{Factors, Matrix};
 use crate::net::Net;
 use crate::problem::{Imbalance, Problem, State};
@@ -14,8 +13,6 @@ pub enum Crossing {
     Empties,
     /// The one that the step gives.
     Goes,
-    /// Beyond 0 the step is scaled by the ratio of the slopes there.
-    Bends,
 }
 
 /// How far Newton's method goes.
@@ -67,12 +64,7 @@ impl Solver {
             if step == plan.steps {
                 break;
             }
-            self.linearize(problem, state);
-            if self.wake(problem, state) {
-                problem.imbalance(&state.u, &mut self.imbalance);
-                self.linearize(problem, state);
-            }
-            self.solve(problem);
+            self.direct(problem, state);
             self.go(problem, state, plan.crossing);
             if step >= plan.balances_from && !self.crossed.is_empty() {
                 balance::around(problem, state, &self.crossed, self.imbalance.least_allowed);
@@ -81,8 +73,19 @@ impl Solver {
         false
     }
 
-    /// Takes one more step from a state in balance, and keeps it where it leaves all nodes on their branches and in a
-    /// better balance: what is allowed may add up over many nodes.
+    /// Brings the unknowns of a state in balance within their limits, and the state into balance again where that was
+    /// due to round-off of unknowns beyond them; whether it is in balance.
+    pub fn confine(&mut self, problem: &Problem, state: &mut State, plan: Plan) -> bool {
+        for (node, u) in state.u.iter_mut().enumerate() {
+            if problem.unknown[node] {
+                *u = u.min(problem.tops[node].0).max(-problem.scales[node]);
+            }
+        }
+        self.run(problem, state, plan)
+    }
+
+    /// Takes one more step from a state in balance, and keeps it where it brings a better one: what is allowed at
+    /// each node may add up over many.
     pub fn polish(&mut self, problem: &Problem, state: &mut State) {
         let before = self.off_by(problem, state);
         self.linearize(problem, state);
@@ -90,15 +93,74 @@ impl Solver {
         let mut next = state.clone();
         self.go(problem, &mut next, Crossing::Goes);
         problem.imbalance(&next.u, &mut self.imbalance);
-        if next.wet == state.wet && self.off_by(problem, &next) <= before {
+        if self.off_by(problem, &next) <= before {
             *state = next;
         } else {
             problem.imbalance(&state.u, &mut self.imbalance);
         }
     }
 
+    /// Whether all nodes are in balance.
+    pub fn is_balanced(&mut self, problem: &Problem, state: &State) -> bool {
+        problem.imbalance(&state.u, &mut self.imbalance);
+        self.is_settled(problem, state)
+    }
+
+    /// Finds the step of Newton's method from a state.
+    pub fn direct(&mut self, problem: &Problem, state: &mut State) {
+        self.linearize(problem, state);
+        if self.wake(problem, state) {
+            problem.imbalance(&state.u, &mut self.imbalance);
+            self.linearize(problem, state);
+        }
+        self.solve(problem);
+    }
+
+    /// Takes a share of that step.
+    pub fn step(&self, problem: &Problem, state: &State, next: &mut State, share: f64) {
+        for node in 0..self.active.len() {
+            let (top, runs_off) = problem.tops[node];
+            let mut to = state.u[node];
+            if self.active[node] {
+                to -= share * self.right[node];
+            }
+            if runs_off {
+                to = to.min(top);
+            }
+            if problem.sources[node] < 0.0 {
+                to = to.max(-problem.scales[node]);
+            }
+            next.u[node] = to;
+            next.wet[node] = if self.active[node] { to > 0.0 } else { state.wet[node] };
+        }
+    }
+
+    /// Share of that step at which the slopes change first; 1 where they do not.
+    pub fn first_kink(&self, problem: &Problem, state: &State) -> f64 {
+        let mut first = 1.0_f64;
+        let mut at = |value: f64, change: f64| {
+            let share = -value / change;
+            if share > 0.0 && share < first {
+                first = share;
+            }
+        };
+        for node in 0..self.active.len() {
+            if self.active[node] && !problem.tops[node].1 {
+                at(state.u[node], -self.right[node]);
+            }
+        }
+        for (pipe, ends) in problem.net.ends.iter().enumerate() {
+            let [a, b] = ends.map(|end| end as usize);
+            if problem.conductance[pipe] > 0.0 && !state.wet[a] && state.wet[b] {
+                let slope = problem.net.drops[pipe] / problem.scales[a];
+                at(state.u[a] * slope + state.u[b], -self.right[a] * slope - self.right[b]);
+            }
+        }
+        first
+    }
+
     /// Sum of the imbalances of nodes (m²/s).
-    fn off_by(&self, problem: &Problem, state: &State) -> f64 {
+    pub fn off_by(&self, problem: &Problem, state: &State) -> f64 {
         let counts = |node: &usize| problem.unknown[*node] && !self.is_bound(problem, state, *node);
         (0..state.u.len()).filter(counts).map(|node| self.imbalance.values[node].abs()).sum()
     }
@@ -107,7 +169,7 @@ impl Solver {
     pub fn is_bound(&self, problem: &Problem, state: &State, node: usize) -> bool {
         let (value, (top, runs_off)) = (self.imbalance.values[node], problem.tops[node]);
         let overflows = runs_off && state.u[node] >= top && value <= 0.0;
-        overflows || state.u[node] <= -DELTA && problem.sources[node] < 0.0 && value >= 0.0
+        overflows || state.u[node] <= -problem.scales[node] && problem.sources[node] < 0.0 && value >= 0.0
     }
 
     /// Whether a node is out of balance.
@@ -162,7 +224,7 @@ impl Solver {
             let (value, allowed) = (self.imbalance.values[node], self.imbalance.allowed[node]);
             let is_flat = self.active[node] && !state.wet[node] && self.matrix.diagonal[node] <= 0.0;
             if is_flat && value.abs() > allowed {
-                let to = if value < 0.0 { 0.0 } else { -DELTA };
+                let to = if value < 0.0 { 0.0 } else { -problem.scales[node] };
                 changed |= state.u[node] != to || (value < 0.0 && !problem.tops[node].1);
                 state.u[node] = to;
                 state.wet[node] = value < 0.0 && !problem.tops[node].1;
@@ -201,12 +263,11 @@ impl Solver {
             if was != wet {
                 self.crossed.push(node as u32);
                 to = match crossing {
-                    Crossing::Empties if was => -DELTA,
-                    Crossing::Bends => to * self.bend(problem, state, node, was),
+                    Crossing::Empties if was => -problem.scales[node],
                     _ => to,
                 };
             }
-            self.right[node] = to.min(top).max(-DELTA);
+            self.right[node] = to.min(top).max(-problem.scales[node]);
         }
         for node in 0..self.active.len() {
             if self.active[node] {
@@ -214,11 +275,5 @@ impl Solver {
                 state.wet[node] = self.right[node] > 0.0;
             }
         }
-    }
-
-    /// Slope of a node's imbalance on its branch, over that on the other at 0.
-    fn bend(&self, problem: &Problem, state: &State, node: usize, was: bool) -> f64 {
-        let (_, other) = problem.imbalance_of(node, 0.0, !was, state);
-        if other > 0.0 { self.matrix.diagonal[node] / other } else { 1.0 }
     }
 }

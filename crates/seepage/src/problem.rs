@@ -1,6 +1,6 @@
 //! The equations of a net: imbalances of nodes and their slopes.
 
-use crate::law::{self, DELTA};
+use crate::law::{self, DELTA, LEVEL, pressure_head};
 use crate::net::{Condition, Net, Storage};
 
 /// Share of the sum of conductances at a node that holds it where no equation does.
@@ -27,15 +27,13 @@ impl State {
     }
 }
 
-/// What holds nodes to an older state.
+/// Hold of nodes to an older state.
 #[derive(Debug)]
 pub enum Hold<'a> {
     /// Nothing: the flow is steady.
     Nothing,
-    /// A pull towards older unknowns (m), by a share of the conductances at each node; it has no meaning of its own.
-    Pull(Vec<f64>, f64),
     /// Water stored since older unknowns (m), within a time (s).
-    Store(Storage<'a>, &'a [f64], f64),
+    Store(Storage<'a>, Vec<f64>, f64),
 }
 
 /// The equations.
@@ -52,12 +50,18 @@ pub struct Problem<'a> {
     /// Greatest unknown that each node can have (m), and whether water runs off there.
     pub tops: Vec<(f64, bool)>,
     pub hold: Hold<'a>,
+    /// Scale of the unknown of each node below 0 (m), in place of `DELTA`: the mean drop of the pipes that lead down
+    /// from it, by their conductances, so that the slope of its outflow is the same above 0.
+    pub scales: Vec<f64>,
 }
 
-/// What a pipe, or a node's own equation, adds to imbalances.
+/// Pressure head (m) and filling of the upper and of the lower node of a pipe.
+type Waters = [(f64, f64); 2];
+
+/// Terms of a pipe.
 #[derive(Debug, Clone, Copy)]
 struct Part {
-    /// To those of the upper and the lower node (m²/s).
+    /// Parts of the imbalances of its upper and its lower node (m²/s).
     imbalance: [f64; 2],
     /// Flow down the pipe (m²/s).
     flow: f64,
@@ -68,7 +72,7 @@ struct Part {
 pub struct Imbalance {
     pub values: Vec<f64>,
     pub allowed: Vec<f64>,
-    /// What is allowed everywhere, apart from round-off.
+    /// Imbalance that is allowed everywhere (m²/s), apart from round-off.
     pub least_allowed: f64,
 }
 
@@ -98,13 +102,47 @@ impl<'a> Problem<'a> {
             unknown: conditions.iter().map(is_unknown).collect(),
             tops: conditions.iter().map(top).collect(),
             hold: Hold::Nothing,
+            scales: scales(net, conductance),
         }
+    }
+
+    /// Unknown (m) by the scale of its node of one by `DELTA`.
+    pub fn scaled(&self, node: usize, u: f64) -> f64 {
+        if u < 0.0 { u / DELTA * self.scales[node] } else { u }
+    }
+
+    /// Unknown (m) by `DELTA` of one by the scale of its node.
+    pub fn unscaled(&self, node: usize, u: f64) -> f64 {
+        if u < 0.0 { (u / self.scales[node]).max(-1.0) * DELTA } else { u }
+    }
+
+    /// Share of its capacity with which a film leaves a node. On the way to a flow an unknown may be below the scale:
+    /// there is no kink, so that fewer stand in the way. No flow has such unknowns.
+    fn filling(&self, node: usize, u: f64) -> f64 {
+        (1.0 + u / self.scales[node]).min(1.0)
+    }
+
+    /// Waters at the ends of a pipe, of the unknowns of its upper and lower node.
+    fn waters(&self, pipe: usize, u: [f64; 2]) -> Waters {
+        let ends = self.net.ends[pipe];
+        [0, 1].map(|k| (pressure_head(u[k]), self.filling(ends[k] as usize, u[k])))
+    }
+
+    /// Waters at the ends of a pipe.
+    fn waters_of(&self, pipe: usize, u: &[f64]) -> Waters {
+        self.waters(pipe, self.net.ends[pipe].map(|end| u[end as usize]))
+    }
+
+    /// Flow (m²/s) down a pipe, of the unknowns of its upper and lower node.
+    fn flow_between(&self, pipe: usize, u: [f64; 2]) -> f64 {
+        let upper = (pressure_head(u[0]), self.filling(self.net.ends[pipe][0] as usize, u[0]));
+        law::flow_of(self.conductance[pipe], self.net.drops[pipe], upper, pressure_head(u[1]))
     }
 
     /// Flow (m²/s) down each pipe.
     pub fn flow(&self, pipe: usize, u: &[f64]) -> f64 {
         let [a, b] = self.net.ends[pipe];
-        law::flow(self.conductance[pipe], self.net.drops[pipe], u[a as usize], u[b as usize])
+        self.flow_between(pipe, [u[a as usize], u[b as usize]])
     }
 
     /// Imbalances of all nodes, those without an equation too.
@@ -122,11 +160,6 @@ impl<'a> Problem<'a> {
             out.allowed[a] += at_a;
             out.allowed[b] += at_b;
         }
-        if let Hold::Pull(old, share) = &self.hold {
-            for (node, value) in out.values.iter_mut().enumerate() {
-                *value += self.sums[node] * share * (u[node] - old[node]);
-            }
-        }
         out.least_allowed = BALANCE * most;
         out.allowed.iter_mut().for_each(|allowed| *allowed = ROUND_OFF * *allowed + out.least_allowed);
     }
@@ -143,10 +176,6 @@ impl<'a> Problem<'a> {
             value += self.part(pipe, u).imbalance[at];
             slope += self.slopes(pipe, u, branch)[at][at];
         }
-        if let Hold::Pull(old, share) = &self.hold {
-            value += self.sums[node] * share * (own - old[node]);
-            slope += self.sums[node] * share;
-        }
         (value, slope)
     }
 
@@ -159,20 +188,18 @@ impl<'a> Problem<'a> {
         ROUND_OFF * sum
     }
 
-    /// Slopes that nodes have beside those of pipes: the pull, and a hold for stagnant pools.
+    /// Slope that holds a node where no pipe does, as in stagnant pools.
     pub fn own_slope(&self, node: usize) -> f64 {
-        let share = if let Hold::Pull(_, share) = &self.hold { *share } else { 0.0 };
-        self.sums[node] * (share + HOLD)
+        self.sums[node] * HOLD
     }
 
     /// Imbalances by a pipe with the unknowns of its upper and lower node.
     fn part(&self, pipe: usize, [upper, lower]: [f64; 2]) -> Part {
         let drop = self.net.drops[pipe];
-        let flow = law::flow(self.conductance[pipe], drop, upper, lower);
+        let flow = self.flow_between(pipe, [upper, lower]);
         let mut imbalance = [flow, -flow];
         if let Hold::Store(storage, old, time) = &self.hold {
-            let was = self.net.ends[pipe].map(|end| old[end as usize]);
-            let stored = stored(storage, pipe, drop, [upper, lower], was);
+            let stored = stored(storage, pipe, drop, self.waters(pipe, [upper, lower]), self.waters_of(pipe, old));
             imbalance[0] += stored[0] / time;
             imbalance[1] += stored[1] / time;
         }
@@ -182,18 +209,25 @@ impl<'a> Problem<'a> {
     /// Slopes of the imbalances of the upper and lower node of a pipe, by the unknown of the upper and of the lower.
     pub fn slopes(&self, pipe: usize, u: [f64; 2], wet: [bool; 2]) -> [[f64; 2]; 2] {
         let (drop, conductance) = (self.net.drops[pipe], self.conductance[pipe]);
-        let (falls, room) = (law::filling(u[0]) * drop, drop - law::pressure_head(u[1]));
+        let a = self.net.ends[pipe][0] as usize;
+        let (falls, room) = (self.filling(a, u[0]) * drop, drop - pressure_head(u[1]));
         let is_film = falls < room || (falls <= room && !wet[1]);
         let by_upper = match (wet[0], is_film) {
             (true, _) => conductance,
-            (false, true) => conductance * drop / DELTA,
+            (false, true) => conductance * drop / self.scales[a],
             (false, false) => 0.0,
         };
         let by_lower = if is_film || !wet[1] { 0.0 } else { -conductance };
         let mut slopes = [[by_upper, by_lower], [-by_upper, -by_lower]];
         if let Hold::Store(storage, old, time) = &self.hold {
-            let was = self.net.ends[pipe].map(|end| old[end as usize]);
-            let ([aa, ab], bb) = stored_slopes(storage, pipe, drop, [u, was], wet);
+            let waters = [self.waters(pipe, u), self.waters_of(pipe, old)];
+            let ([aa, ab], bb) = stored_slopes(
+                storage,
+                pipe,
+                drop,
+                waters,
+                (wet, [self.scales[a], self.scales[self.net.ends[pipe][1] as usize]]),
+            );
             slopes[0][0] += aa / time;
             slopes[0][1] += ab / time;
             slopes[1][1] += bb / time;
@@ -214,36 +248,48 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Share of a pipe that is full of water from its lower end, with the unknown there.
-fn full(lower: f64, drop: f64) -> f64 {
-    law::wet_share(lower, drop)
+/// Scales of the unknowns of nodes below 0 (m).
+fn scales(net: &Net, conductance: &[f64]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); net.heights().len()];
+    for (pipe, &[upper, _]) in net.ends.iter().enumerate() {
+        let (drops, conducts) = &mut sums[upper as usize];
+        *drops += conductance[pipe] * net.drops[pipe];
+        *conducts += if net.drops[pipe] > 0.0 { conductance[pipe] } else { 0.0 };
+    }
+    sums.into_iter().map(|(drops, conducts)| if drops > 0.0 { drops / conducts } else { DELTA }).collect()
 }
 
-/// Water (m²) that a pipe books to its upper and to its lower node as its unknowns change: below the surface it is
-/// full, above it the film stands in it. The two add up to what it holds more.
-fn stored(storage: &Storage, pipe: usize, drop: f64, now: [f64; 2], was: [f64; 2]) -> [f64; 2] {
+/// Water (m²) that a pipe books to its upper and to its lower node as its waters change: below the surface it is full,
+/// above it the film stands in it. The two add up to what it holds more.
+fn stored(storage: &Storage, pipe: usize, drop: f64, now: Waters, was: Waters) -> [f64; 2] {
     let (volume, half) = (storage.volume[pipe], 0.5 * storage.compliance[pipe]);
-    let (filled, was_filled) = (law::filling(now[0]), law::filling(was[0]));
-    let (full, was_full) = (full(now[1], drop), full(was[1], drop));
-    let pressed = |k: usize| half * (law::pressure_head(now[k]) - law::pressure_head(was[k]));
-    let top = volume * (1.0 - full) * (filled - was_filled);
-    let foot = volume * (1.0 - was_filled) * (full - was_full);
-    [top + pressed(0), foot + pressed(1)]
+    let filled = [0, 1].map(|k| now[k].1 - was[k].1);
+    let [top, foot] = if drop < LEVEL {
+        filled.map(|filled| 0.5 * volume * filled)
+    } else {
+        let (full, was_full) = (law::wet_share(now[1].0, drop), law::wet_share(was[1].0, drop));
+        [volume * (1.0 - full) * filled[0], volume * (1.0 - was[0].1) * (full - was_full)]
+    };
+    [top + half * (now[0].0 - was[0].0), foot + half * (now[1].0 - was[1].0)]
 }
 
-/// Slopes of what a pipe books: of the upper node by both unknowns, of the lower one by its own.
+/// Slopes of what a pipe books: of the upper node by both unknowns, of the lower one by its own. `wet` says which ends
+/// have pressure; scales are those of both.
 fn stored_slopes(
     storage: &Storage,
     pipe: usize,
     drop: f64,
-    [now, was]: [[f64; 2]; 2],
-    wet: [bool; 2],
+    [now, was]: [Waters; 2],
+    (wet, scales): ([bool; 2], [f64; 2]),
 ) -> ([f64; 2], f64) {
     let (volume, half) = (storage.volume[pipe], 0.5 * storage.compliance[pipe]);
-    let (filled, was_filled) = (law::filling(now[0]), law::filling(was[0]));
-    let fills = if wet[1] && now[1] < drop { 1.0 / drop } else { 0.0 };
-    let by_film = if wet[0] { 0.0 } else { volume * (1.0 - full(now[1], drop)) / DELTA };
+    let by_film = [0, 1].map(|k| if wet[k] { 0.0 } else { volume / scales[k] });
     let pressed = wet.map(|wet| if wet { half } else { 0.0 });
-    let upper = [by_film + pressed[0], -volume * (filled - was_filled) * fills];
-    (upper, volume * (1.0 - was_filled) * fills + pressed[1])
+    if drop < LEVEL {
+        return ([0.5 * by_film[0] + pressed[0], 0.0], 0.5 * by_film[1] + pressed[1]);
+    }
+    let fills = if wet[1] && now[1].0 < drop { 1.0 / drop } else { 0.0 };
+    let empty = 1.0 - law::wet_share(now[1].0, drop);
+    let upper = [by_film[0] * empty + pressed[0], -volume * (now[0].1 - was[0].1) * fills];
+    (upper, volume * (1.0 - was[0].1) * fills + pressed[1])
 }

@@ -94,6 +94,21 @@ fn a_source_raises_the_head_above_all_others() {
 }
 
 #[test]
+fn water_flows_up_from_a_dip() {
+    // Down to -5 m and up to an outlet at 2 m, from a head of 8 m; all of it is full.
+    let mut joints = line(8, [0.0, 5.0], [10.0, -5.0], [1e-4; 2]);
+    let rise = line(8, [10.0, -5.0], [20.0, 2.0], [1e-4; 2]);
+    joints.places.extend(&rise.places[1..]);
+    joints.pipes.extend((8..16).map(|k| [k, k + 1]));
+    joints.apertures.extend(&rise.apertures);
+    joints.conditions.resize(17, FREE);
+    (joints.conditions[0], joints.conditions[16]) = (held(8.0), Condition::Air);
+    let flow = joints.steady();
+    let length: f64 = joints.lengths().iter().sum();
+    flow.flow.iter().for_each(|&q| assert_same(q, capacity(1e-4) * 6.0 / length));
+}
+
+#[test]
 fn pieces_apart_are_dry_and_dead_ends_have_still_water() {
     let heights = [0.0, 0.0, 5.0, 5.0, 0.0, -3.0];
     let pipes = [[0, 4], [4, 1], [2, 3], [4, 5]];

@@ -6,3 +6,4 @@ mod grids;
 mod parts;
 mod refused;
 mod slopes;
+mod time;

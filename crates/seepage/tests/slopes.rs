@@ -1,8 +1,8 @@
 //! Slopes with two sets of random joints are solved whatever the scatter of their apertures, from full and from dry;
 //! a net of ten thousand joints takes a second.
 
-use crate::parts::{Joints, Random, held};
-use enmm_seepage::{Condition, DELTA, Flow};
+use crate::parts::{FREE, Joints, Random, held};
+use enmm_seepage::{Condition, DELTA, Flow, law};
 use std::time::Instant;
 
 /// Outline of the slope (m), at scale 1.
@@ -102,9 +102,9 @@ fn parts(random: &mut Random, scatter: f64, outline: &[[f64; 2]]) -> Vec<Part> {
 /// Condition of a node on an edge of the outline.
 fn condition(edge: usize, height: f64, scale: f64) -> Condition {
     match edge {
-        0 | 5 => held(f64::NAN),
+        0 | 5 => FREE,
         1 if height <= LEVELS[1] * scale => held(LEVELS[1] * scale),
-        1 => held(f64::NAN),
+        1 => FREE,
         _ if height <= LEVELS[0] * scale => held(LEVELS[0] * scale),
         _ => Condition::Air,
     }
@@ -123,11 +123,9 @@ fn slope(seed: u64, scatter: f64, scale: f64) -> Joints {
         let mut ends = Vec::new();
         for (k, share) in [(0, 0.0), (1, 1.0)] {
             let condition = part.edges[k].map(|edge| condition(edge, part.ends[k][1], scale));
-            let is_given =
-                condition.is_some_and(|condition| !matches!(condition, Condition::Held { head } if head.is_nan()));
             ends.push((share, places.len() as u32));
             places.push(part.ends[k]);
-            conditions.push(condition.filter(|_| is_given).unwrap_or(crate::parts::FREE));
+            conditions.push(condition.unwrap_or(FREE));
         }
         on.push(ends);
     }
@@ -138,7 +136,7 @@ fn slope(seed: u64, scatter: f64, scale: f64) -> Joints {
                 on[i].push((own, places.len() as u32));
                 on[j].push((other, places.len() as u32));
                 places.push(between(part.ends, own));
-                conditions.push(crate::parts::FREE);
+                conditions.push(FREE);
             }
         }
     }
@@ -157,19 +155,17 @@ fn slope(seed: u64, scatter: f64, scale: f64) -> Joints {
 
 #[test]
 fn slopes_are_solved_whatever_the_scatter() {
-    for scatter in [0.0, 1.0, 2.0, 4.0] {
-        let (mut solves, mut most, mut long, mut worst) = (0, 0, 0, 0.0_f64);
+    for (scatter, allowed) in [(0.0, 1e-11), (1.0, 3e-10), (2.0, 4e-9), (4.0, 1e-6)] {
+        let (mut solves, mut most, mut worst) = (0, 0, 0.0_f64);
         for seed in 0..40 {
             let joints = slope(seed, scatter, 1.0);
             let flow = joints.steady();
             solves += flow.solves;
             most = most.max(flow.solves);
-            long += u32::from(flow.solves > 31);
             worst = worst.max(flow.inflow.iter().sum::<f64>().abs() / flow.through_flow);
         }
-        println!("scatter {scatter}: {solves} solves, {most} at most, {long} by the march, balance {worst:.1e}");
-        let allowed = [1e-12, 3e-10, 4e-9, 1e-4][scatter.log2().max(-1.0) as usize + usize::from(scatter >= 1.0)];
-        assert!(worst < allowed, "balance {worst:e} at scatter {scatter}");
+        println!("scatter {scatter}: {solves} solves, {most} at most, balance {worst:.1e}");
+        assert!(most < 200 && worst < allowed, "balance {worst:e} at scatter {scatter}");
     }
 }
 
@@ -180,7 +176,11 @@ fn the_flow_does_not_depend_on_where_it_starts() {
         let full = joints.steady();
         let dry = vec![-DELTA; full.u.len()];
         let other: Flow = joints.net().steady_from(&joints.conductance(), &joints.conditions, &dry).unwrap();
-        println!("{seed}: {} solves from full, {} from dry", full.solves, other.solves);
+        let least = 1e-9 * full.flow.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
+        for (pipe, _) in joints.pipes.iter().zip(&full.flow).filter(|(_, q)| q.abs() > least) {
+            let heads = pipe.map(|node| [&full, &other].map(|flow| law::pressure_head(flow.u[node as usize])));
+            assert!(heads.iter().all(|[a, b]| (a - b).abs() < 1e-6), "{heads:?} at seed {seed}");
+        }
         let ratio = other.through_flow / full.through_flow - 1.0;
         assert!(ratio.abs() < 1e-8, "{ratio:e} at seed {seed}");
     }
