@@ -7,17 +7,18 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Rooms of `src/` in rank order, each with its most lines; each imports only from those before it.
-const ROOMS: [(&str, usize); 11] = [
+const ROOMS: [(&str, usize); 12] = [
     ("geometry", 3450),
     ("cover", 1300),
     ("rock", 1400),
     ("mechanics", 2900),
     ("contact", 7800),
-    ("state", 2200),
-    ("step", 3400),
+    ("flow", 500),
+    ("state", 2250),
+    ("step", 3550),
     ("fracture", 1100),
     ("recut", 1150),
-    ("model", 6500),
+    ("model", 7050),
     ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;

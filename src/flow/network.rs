@@ -98,7 +98,7 @@ impl FlowNet {
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not
-    /// conduct. Closure that is the solver's own does not count.
+    /// conduct (Eq. 96). Closure that is the solver's own does not count.
     pub fn aperture(&self, law: LawId, opening: f64, closes: bool) -> f64 {
         let start = self.apertures[law.index()];
         let opening = if closes { opening } else { opening.max(0.0) };
@@ -106,7 +106,7 @@ impl FlowNet {
     }
 
     /// Conductance (m²/s per m of head) of a piece with these apertures (m) at its ends, in water of a unit weight
-    /// (N/m³).
+    /// (N/m³; Eq. 95).
     pub fn conductance(&self, piece: &FlowPiece, [e0, e1]: [f64; 2], unit_weight: f64) -> f64 {
         law::conductance(e0, e1, piece.length, unit_weight, self.viscosity)
     }

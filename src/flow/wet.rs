@@ -12,7 +12,7 @@ pub struct Wet {
 }
 
 /// The wet part of a piece between nodes with these unknowns `u` and heights (m); none of a dry one. Where the upper
-/// node has no pressure, the water stands below a free surface (Eq. 92).
+/// node has no pressure, the water stands below a free surface (Eq. 99).
 pub fn wet(u: [f64; 2], heights: [f64; 2]) -> Option<Wet> {
     let heads = u.map(pressure_head);
     let [upper, lower] = if heights[0] < heights[1] { [1, 0] } else { [0, 1] };

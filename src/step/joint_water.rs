@@ -32,7 +32,7 @@ impl JointWater<'_> {
         }
     }
 
-    /// Pushes both faces of a piece as far as it is wet (Eq. 92).
+    /// Pushes both faces of a piece as far as it is wet (Eq. 99).
     fn push_piece(&self, faces: &Faces, piece: &FlowPiece, force: &mut (impl Forces + ?Sized)) {
         let unknowns = piece.nodes.map(|node| self.seepage.unknowns[node as usize]);
         let heights = piece.nodes.map(|node| self.net.places[node as usize].y);
