@@ -117,7 +117,8 @@ fn a_rock_bridge_keeps_water_back_until_it_breaks() {
                  [[joint]]\npoints = [[6, 4], [10, 4]]\n";
     let law = |tension: f64| {
         format!(
-            "[joint_law.bridge]\nfriction_deg = 40\ntension = {tension:?}\ncohesion = {tension:?}\nresidual_cohesion = 0\n"
+            "[joint_law.bridge]\nfriction_deg = 40\ntension = {tension:?}\ncohesion = {tension:?}\n\
+             residual_cohesion = 0\n"
         )
     };
     let lift = "[[load]]\nkind = \"traction\"\nedge = [[0, 8], [10, 8]]\ntraction = [0, 6e5]\n";

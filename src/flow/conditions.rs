@@ -1,19 +1,8 @@
-//! What holds at the nodes of a net: heads, the reservoir, air.
+//! Conditions at the nodes of a net: heads, the reservoir, air.
 
 use enmm_seepage::{Condition, Flow};
 
 use super::network::{FlowNet, Outcrop};
-
-/// A head that is held at nodes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HeldHead {
-    /// Name.
-    pub name: String,
-    /// Its nodes, in their order.
-    pub nodes: Vec<u32>,
-    /// Level (m) at the start of each stage.
-    pub levels: Vec<f64>,
-}
 
 /// Where water enters and leaves a net.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +15,7 @@ pub enum Inlet {
     Air,
 }
 
-/// What is around a net at the start of a stage.
+/// Surroundings of a net at the start of a stage.
 #[derive(Debug, Clone, Copy)]
 pub struct Outside<'a> {
     /// Stage, for the levels of heads.
@@ -43,7 +32,7 @@ impl FlowNet {
         self.heads.iter().map(|head| head.name.as_str()).chain(["reservoir", "air"])
     }
 
-    /// What holds at each node, and which inlet it is.
+    /// Condition at each node, and which inlet it is.
     pub fn conditions(&self, outside: Outside) -> Vec<(Condition, Option<Inlet>)> {
         let free = (Condition::Free { source: 0.0 }, None);
         let at = |node: usize| {

@@ -5,10 +5,9 @@ use enmm_seepage::{Net, Refused, law};
 use crate::contact::{Boundary, EdgeId, Facing, Facings, LawId};
 use crate::geometry::Point;
 
-use super::conditions::HeldHead;
 use super::nodes::Nodes;
 
-/// What is outside of the rock at a node of the net.
+/// Place outside of the rock at a node of the net.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Outcrop {
     /// Nothing that water reaches: the node lies within the rock, or where no water goes through.
@@ -18,6 +17,17 @@ pub enum Outcrop {
     Air,
     /// The reservoir where its surface is above the node, else air.
     Reservoir,
+}
+
+/// A head that is held at nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldHead {
+    /// Name.
+    pub name: String,
+    /// Its nodes, in their order.
+    pub nodes: Vec<u32>,
+    /// Level (m) at the start of each stage.
+    pub levels: Vec<f64>,
 }
 
 /// A piece of joint as a pipe between two nodes.
@@ -42,7 +52,7 @@ pub struct FlowNet {
     pub pieces: Vec<FlowPiece>,
     /// Places of the nodes (m).
     pub places: Vec<Point>,
-    /// What is outside at each node.
+    /// Place outside of the rock at each node.
     pub outcrops: Vec<Outcrop>,
     /// Heads that are held.
     pub heads: Vec<HeldHead>,
@@ -59,8 +69,8 @@ pub struct FlowNet {
 }
 
 impl FlowNet {
-    /// Finds nodes and pieces; `law` gives the law of an edge, `outside` what an edge of the outline meets. Apertures
-    /// and heads are still to be filled in.
+    /// Finds nodes and pieces; `law` gives the law of an edge, `outside` the place that an edge of the outline meets.
+    /// Apertures and heads are still to be filled in.
     ///
     /// # Errors
     /// More pieces than a net can have.

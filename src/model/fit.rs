@@ -160,7 +160,7 @@ impl Simulation {
             law_switch: _,
             damping: _,
             water_density: _,
-            seepage,
+            seepage: _,
             bolts: _,
             drive,
             events,
@@ -180,7 +180,6 @@ impl Simulation {
         check_neighbours(model, neighbours)?;
         check_found(model, found, contacts, neighbours)?;
         self.check_stages(model, state)?;
-        check_seepage(model, seepage.as_ref(), state.stage)?;
         check_drive(model, drive)?;
         check_events(model, events)?;
         check_ledger(ledger)?;
@@ -281,6 +280,7 @@ impl Simulation {
             between("damping", damping, 0.0, 1.0)?;
         }
         between("water_density", state.water_density, 0.0, RATE)?;
+        check_seepage(model, state.seepage.as_ref(), state.stage)?;
         same("law_switch", &state.law_switch, &switch)?;
         for (k, bolt) in state.bolts.iter().enumerate() {
             let BoltState { active: _, broken: _, rest, natural, force } = *bolt;

@@ -138,7 +138,7 @@ impl Seen<'_> {
         self.net.pieces.iter().map(of_piece).collect()
     }
 
-    /// What holds at each node, and which inlet it is.
+    /// Condition at each node, and which inlet it is.
     fn conditions(&self, flooded: &[bool]) -> Vec<(Condition, Option<Inlet>)> {
         let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
         self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths })
@@ -198,7 +198,7 @@ impl Seen<'_> {
         }
     }
 
-    /// What has come to each node in the place of blocks that have been dug out.
+    /// Air or water that has come to each node in the place of blocks that have been dug out.
     fn dug(&self, flooded: &[bool]) -> Vec<Outcrop> {
         let mut dug = vec![Outcrop::None; self.net.places.len()];
         for piece in &self.net.pieces {

@@ -142,8 +142,8 @@ clone_without_allocating! {
     State {
         stage stage_start stage_starts most_rest stage_step step part dt_last displacement velocity contacts
         bonds sections found friction_delay neighbours support_force support_rest worst_sections cuts fix_active removed
-        laws law_switch damping water_density seepage stage_displacement stage_force drive bolts plastic columns acceleration
-        static_stretch events ledger counters
+        laws law_switch damping water_density seepage stage_displacement stage_force drive bolts plastic columns
+        acceleration static_stretch events ledger counters
     }
 }
 

@@ -7,7 +7,7 @@ use crate::geometry::Vector;
 use crate::mechanics::{Forces, pressure};
 use crate::state::{Seepage, Water};
 
-use super::applied::Faces;
+use super::faces::Faces;
 
 /// Water in joints while a sub-step acts.
 pub(super) struct JointWater<'a> {

@@ -6,6 +6,7 @@ mod bonds;
 mod contacts;
 mod events;
 mod explicit;
+mod faces;
 mod friction;
 mod guard;
 mod integrator;

@@ -135,8 +135,9 @@ fn flow(survey: &FlowSurvey) -> String {
     let FlowSurvey { nodes, pieces, heads, outcrops, dead_ends, length, isolated, transmissivity: [least, most] } =
         *survey;
     format!(
-        "flow in {pieces} pieces of joint, {length:.3} m, between {nodes} nodes: {heads} with a head, {outcrops} open to \
-         the air, {dead_ends} dead ends; {isolated:.3} m isolated and dry; transmissivity {least:.3e} to {most:.3e} m²/s"
+        "flow in {pieces} pieces of joint, {length:.3} m, between {nodes} nodes: {heads} with a head, {outcrops} open \
+         to the air, {dead_ends} dead ends; {isolated:.3} m isolated and dry; transmissivity {least:.3e} to {most:.3e} \
+         m²/s"
     )
 }
 

@@ -53,7 +53,7 @@ impl FlowRecord {
 /// Writes the records as CSV, units in the header; digits read back to the same numbers.
 ///
 /// # Errors
-/// Whatever the file system refuses, with the path in the message.
+/// All that the file system refuses, with the path in the message.
 pub(crate) fn write_flow(path: &Path, records: &[FlowRecord]) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     csv.write_record(COLUMNS).map_err(io::Error::from).map_err(at_path(path))?;

@@ -48,8 +48,8 @@ fn factor(uplift: impl Fn(f64) -> f64) -> f64 {
     (25e3 * length + normal * 35f64.to_radians().tan()) / (weight * s + push * c)
 }
 
-/// Uplift (N/m) of pressures that are linear between the ends of joints with these apertures: the greatest flow in series
-/// that leaves no pressure negative. Below where it is 0 for the first time, water runs as a film.
+/// Uplift (N/m) of pressures that are linear between the ends of joints with these apertures: the greatest flow in
+/// series that leaves no pressure negative. Below where it is 0 for the first time, water runs as a film.
 fn uplift(apertures: &[f64], length: f64) -> f64 {
     let count = apertures.len();
     let (step, fall) = (length / count as f64, FOOT[1] / count as f64);

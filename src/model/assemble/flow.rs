@@ -40,7 +40,7 @@ fn invalid(key: &str, message: String) -> Invalid {
     Invalid { key: key.to_owned(), message }
 }
 
-/// What each edge of the outline meets.
+/// Place beyond each edge of the outline.
 fn outside<'a>(
     case: &Case,
     boundary: &Boundary,
@@ -122,7 +122,7 @@ const ISOLATED_SHARE: f64 = 0.05;
 /// Difference of heads (m) that is none.
 const EQUAL: f64 = 1e-9;
 
-/// What looks unintended about the flow of a case.
+/// Warnings of a flow that looks unintended.
 pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
     let Some(net) = &model.flow else { return Vec::new() };
     let stages: Vec<_> = (0..case.stages.len()).map(|stage| conditions(net, model, stage)).collect();
@@ -156,14 +156,14 @@ pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
     warnings
 }
 
-/// What holds at a node.
+/// Condition at a node.
 type At = (Condition, Option<Inlet>);
 
 fn digs(case: &Case) -> bool {
     case.stages.iter().any(|stage| !stage.excavate.is_empty() || stage.excavate_region.is_some())
 }
 
-/// What holds at the nodes at the start of a stage if nothing is dug.
+/// Conditions at the nodes at the start of a stage if nothing is dug.
 fn conditions(net: &FlowNet, model: &Model, stage: usize) -> Vec<At> {
     let depth = |at: &Point| {
         let surface = model.water.as_ref().map(|water| &water.surfaces[stage]);

@@ -102,7 +102,7 @@ pub fn build(
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines, before), tolerance, tell)?;
+    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines, before, tolerance), tell)?;
     model.integrator =
         integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
     let bridges = sections::of_bridges(case, &joints, &mut model);
@@ -155,8 +155,7 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 fn model(
     case: &Case,
     joints: &Joints,
-    (covers, outlines, before): (Covers, &Outlines, Option<&Boundary>),
-    tolerance: f64,
+    (covers, outlines, before, tolerance): (Covers, &Outlines, Option<&Boundary>, f64),
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
     let positions = Locator { covers: &covers, outlines, tolerance };

@@ -29,8 +29,8 @@ pub fn validate_flow(root: &Key, case: &Case) -> Check {
         return fail(&root.field("water").field("joints"), message);
     }
     if case.solver.integrator == Integrator::Implicit {
-        let message = "is for solver.integrator = \"explicit\", and the case has \"implicit\"; use the explicit one, or \
-                       remove it";
+        let message = "is for solver.integrator = \"explicit\", and the case has \"implicit\"; use the explicit one, \
+                       or remove it";
         return fail(&key, message);
     }
     refuse_other_blocks(&key, case)
