@@ -70,7 +70,7 @@ fn tapered(toe: f64, crack: f64) -> Vec<f64> {
     (0..16).map(pair).collect()
 }
 
-/// What the solver of linear programs leaves: 1e-4.
+/// Tolerance of the solver of linear programs: 1e-4.
 #[test]
 fn limit_analysis_has_the_uplift_of_water_that_flows() {
     let even = vec![1e-4; 16];
