@@ -100,18 +100,24 @@ fn parts(random: &mut Random, scatter: f64, outline: &[[f64; 2]]) -> Vec<Part> {
 }
 
 /// Condition of a node on an edge of the outline.
-fn condition(edge: usize, height: f64, scale: f64) -> Condition {
+fn condition(edge: usize, height: f64, levels: [f64; 2]) -> Condition {
     match edge {
         0 | 5 => FREE,
-        1 if height <= LEVELS[1] * scale => held(LEVELS[1] * scale),
+        1 if height <= levels[1] => held(levels[1]),
         1 => FREE,
-        _ if height <= LEVELS[0] * scale => held(LEVELS[0] * scale),
+        _ if height <= levels[0] => held(levels[0]),
         _ => Condition::Air,
     }
 }
 
 /// A slope of a size over that of the outline.
 fn slope(seed: u64, scatter: f64, scale: f64) -> Joints {
+    slope_at(seed, scatter, scale, LEVELS)
+}
+
+/// A slope between waters of other levels (m, at scale 1).
+pub fn slope_at(seed: u64, scatter: f64, scale: f64, levels: [f64; 2]) -> Joints {
+    let levels = levels.map(|level| level * scale);
     let outline = OUTLINE.map(|place| place.map(|x| x * scale));
     let mut parts = parts(&mut Random::new(seed), scatter, &outline);
     let low = |part: &Part| f64::min(part.ends[0][0], part.ends[1][0]);
@@ -122,7 +128,7 @@ fn slope(seed: u64, scatter: f64, scale: f64) -> Joints {
     for part in &parts {
         let mut ends = Vec::new();
         for (k, share) in [(0, 0.0), (1, 1.0)] {
-            let condition = part.edges[k].map(|edge| condition(edge, part.ends[k][1], scale));
+            let condition = part.edges[k].map(|edge| condition(edge, part.ends[k][1], levels));
             ends.push((share, places.len() as u32));
             places.push(part.ends[k]);
             conditions.push(condition.unwrap_or(FREE));
@@ -198,4 +204,43 @@ fn ten_thousand_joints_are_solved_in_a_second() {
         println!("{nodes} nodes, {pipes} pipes: built in {built:?}, all {time:?}, {} solves", flow.solves);
         assert!(nodes > 40_000 && flow.solves < 60 && time.as_secs_f64() < 20.0);
     }
+}
+
+#[test]
+fn slopes_with_rain_and_pumps_are_solved() {
+    let (mut solves, mut most, mut dry) = (0, 0, 0);
+    for seed in 0..60 {
+        let mut joints = slope(seed, [0.0, 1.0, 2.0][seed as usize % 3], 1.0);
+        let mut random = Random::new(seed + 1000);
+        for (place, condition) in joints.places.iter().zip(&mut joints.conditions) {
+            match condition {
+                Condition::Air if place[1] > 29.0 => {
+                    *condition = Condition::Rain { rate: 10.0_f64.powf(random.between(-9.0, -5.0)) };
+                }
+                Condition::Free { .. } if random.between(0.0, 1.0) < 0.02 => {
+                    *condition = Condition::Free { source: -10.0_f64.powf(random.between(-9.0, -5.0)) };
+                }
+                _ => {}
+            }
+        }
+        let flow = joints.steady();
+        solves += flow.solves;
+        most = most.max(flow.solves);
+        assert!(flow.inflow.iter().sum::<f64>().abs() < 1e-8 * flow.through_flow, "balance at seed {seed}");
+        for (node, condition) in joints.conditions.iter().enumerate() {
+            match *condition {
+                Condition::Rain { rate } => {
+                    assert!((flow.inflow[node] + flow.run_off[node] - rate).abs() <= 1e-12 * rate);
+                    assert!(flow.u[node] <= 0.0 && flow.run_off[node] >= 0.0);
+                }
+                Condition::Free { source } if source < 0.0 => {
+                    assert!((source..=0.0).contains(&flow.inflow[node]), "a pump gives or takes more");
+                    dry += u32::from(flow.inflow[node] > source);
+                }
+                _ => {}
+            }
+        }
+    }
+    println!("{solves} solves, {most} at most, {dry} pumps are dry");
+    assert!(most < 200 && dry > 60);
 }

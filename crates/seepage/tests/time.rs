@@ -128,3 +128,29 @@ fn bits_of_steps_are_equal_and_wrong_times_are_refused() {
     let short = Storage { volume: &[1.0], ..storage };
     assert_eq!(of(short, &clock.u, 1.0), Err("`volume` has 1 values, and the net needs 10".to_owned()));
 }
+
+#[test]
+fn drawdowns_of_slopes_keep_their_water() {
+    let (mut solves, mut steps) = (0, 0);
+    for seed in 0..12 {
+        let scatter = [0.0, 1.0, 2.0][seed as usize % 3];
+        let before = crate::slopes::slope_at(seed, scatter, 1.0, [22.0, 25.0]);
+        let start = before.steady();
+        let mut clock = Clock::new(&before, start.u);
+        for step in 1..=24 {
+            let level = 22.0 - 14.0 * f64::from(step.min(8)) / 8.0;
+            clock.conditions = crate::slopes::slope_at(seed, scatter, 1.0, [level, 25.0]).conditions;
+            solves += clock.step(3600.0 / 24.0).solves;
+            steps += 1;
+        }
+        let end = crate::slopes::slope_at(seed, scatter, 1.0, [8.0, 25.0]);
+        let steady = end.steady().through_flow;
+        for step in 0..8 {
+            solves += clock.step(3600.0 * 8.0_f64.powi(step)).solves;
+            steps += 1;
+        }
+        let last = clock.step(1e12).through_flow;
+        assert!((last / steady - 1.0).abs() < 1e-6, "{last:e} {steady:e} at seed {seed}");
+    }
+    println!("{solves} solves in {steps} steps");
+}
