@@ -9,7 +9,7 @@ pub mod changes;
 pub mod film;
 mod flow;
 mod folder;
-mod history;
+pub mod history;
 mod input;
 pub mod motion;
 mod progress;
