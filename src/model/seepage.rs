@@ -106,7 +106,8 @@ impl Seen<'_> {
         let count = |is: fn(&Condition) -> bool| nodes().filter(|(condition, _)| is(&condition.0)).count();
         let lengths = |all: bool| {
             let is_isolated = |piece: &FlowPiece| !fed[labels[piece.nodes[0] as usize] as usize];
-            open().filter(|(piece, _)| all || is_isolated(piece)).map(|(piece, _)| piece.length).sum()
+            let these = open().filter(|(piece, _)| all || is_isolated(piece));
+            these.map(|(piece, _)| piece.length).fold(0.0, |sum, length| sum + length)
         };
         let each = || open().map(|(piece, g)| g * piece.length);
         FlowSurvey {
