@@ -2,6 +2,8 @@
 //! are those of hand calculations of nets of two joints, before and after an excavation and a rock bridge; what enters
 //! leaves, and states are the same to the bit by any number of threads and through bytes.
 
+use allocation_counter::measure;
+
 use crate::common::{case, refusal, run_stage, simulation, step};
 use enmm::geometry::Vector;
 use enmm::model::bytes::{Keeper, decode, encode};
@@ -173,6 +175,16 @@ fn run(threads: usize, stopped: bool) -> State {
 }
 
 #[test]
+fn a_step_with_water_in_joints_allocates_nothing() {
+    let flow = "[flow]\naperture = 1e-4\n[[head]]\nname = \"hill\"\nedge = [[12, 0], [12, 8]]\nlevel = 7.5\n";
+    let mut model = simulation(&slope(&format!("[water]\nlevel = 4.0\njoints = false\n{flow}")));
+    model.set_serial(true);
+    step(&mut model, 400);
+    let found = measure(|| step(&mut model, 50));
+    assert_eq!(found.count_total, 0, "{found:?}");
+}
+
+#[test]
 fn threads_and_bytes_change_no_bit_and_what_enters_leaves() {
     let one = run(1, false);
     let balances = &one.seepage.as_ref().expect("water that flows").balances;
@@ -186,6 +198,25 @@ fn threads_and_bytes_change_no_bit_and_what_enters_leaves() {
         let bits = |state: &State| encode(Keeper::Model, state, "hash").expect("bytes");
         assert!(bits(&one) == bits(&other), "{threads} threads, stopped: {stopped}");
     }
+}
+
+/// Openings since the start count at the start of a later stage: the lid, held at both ends, is lifted off its joint,
+/// which takes more water then, and within the greatest aperture.
+#[test]
+fn joints_that_have_opened_take_more_water_in_the_next_stage() {
+    let lift = "[[load]]\nkind = \"traction\"\nedge = [[0, 8], [10, 8]]\ntraction = [0, 6e5]\n";
+    let stages = "[[stage]]\nname = \"again\"\nkind = \"static\"\nduration = 0.3\n";
+    let through = |most: &str| {
+        let text = plate(LEVEL_JOINT, lift, stages).replace("aperture_max = 2e-4\n", most);
+        let mut model = simulation(&text);
+        let before = balance(&model).sums[0][0];
+        run_stage(&mut model);
+        assert!(model.next_stage().expect("a stage"));
+        balance(&model).sums[0][0] / before
+    };
+    let [free, bounded] = ["", "aperture_max = 2.2e-4\n"].map(through);
+    println!("{free:.4} and {bounded:.4} times the flow");
+    assert!(free > 1.01 && bounded > 1.01 && bounded <= 1.1_f64.powi(3) && bounded <= free, "{free} {bounded}");
 }
 
 /// Heads that say nothing, joints that no water reaches, and no water at all.
