@@ -5,6 +5,7 @@
 use allocation_counter::measure;
 
 use crate::common::{case, refusal, run_stage, simulation, step};
+use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
 use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::{FlowBalance, Seepage, Simulation, State};
@@ -292,4 +293,30 @@ fn what_flow_needs_and_excludes_is_told() {
         assert!(told.contains(message), "{text}\n{told}");
     }
     assert!(case(&stages("static", "heads = { hill = 3.0 }\n")).stages[1].heads["hill"] == 3.0);
+}
+
+/// A host that steps far or near, or goes back, finds the same bits: dynamic stages hold the pressures.
+#[test]
+fn steps_of_a_host_change_no_bit() {
+    let flow = "[flow]\naperture = 1e-4\n[[head]]\nname = \"hill\"\nedge = [[12, 0], [12, 8]]\nlevel = 7.5\n";
+    let text = slope(&format!("[water]\nlevel = 4.0\njoints = false\n{flow}"));
+    let text = text + "[[stage]]\nname = \"shake\"\nkind = \"dynamic\"\nduration = 1.0\n";
+    let end = 0.05;
+    let host = || Cosimulation::new(case(&text)).unwrap_or_else(|e| panic!("{e}"));
+    let run = |model: &mut Cosimulation, parts: u32| {
+        for part in 0..parts {
+            let from = end * f64::from(part) / f64::from(parts);
+            model.do_step(from, end / f64::from(parts)).unwrap_or_else(|e| panic!("{e}"));
+        }
+    };
+    let [mut whole, mut parts] = [host(), host()];
+    run(&mut whole, 1);
+    parts.start().unwrap_or_else(|e| panic!("{e}"));
+    let saved = parts.save();
+    run(&mut parts, 10);
+    assert!(whole.simulation().state() == parts.simulation().state());
+    parts.restore(&saved).unwrap_or_else(|e| panic!("{e}"));
+    run(&mut parts, 2);
+    assert!(whole.simulation().state() == parts.simulation().state());
+    assert!(flowing(whole.simulation()).unknowns.iter().any(|head| *head > 1.0));
 }
