@@ -67,6 +67,7 @@ mod observe;
 mod overlap_events;
 mod polygons;
 mod quiet_boundary;
+mod rain;
 mod record_means;
 mod runaway;
 mod sliding_converges;

@@ -1,4 +1,4 @@
-//! Conditions at the nodes of a net: heads, the reservoir, air.
+//! Conditions at the nodes of a net: heads, rain, the reservoir, air.
 
 use enmm_seepage::{Condition, Flow};
 
@@ -9,6 +9,8 @@ use super::network::{FlowNet, Outcrop};
 pub enum Inlet {
     /// A head by its index.
     Head(u32),
+    /// Rain by its index.
+    Rain(u32),
     /// Outcrops below the surface of the reservoir.
     Reservoir,
     /// Outcrops open to the air.
@@ -29,7 +31,8 @@ pub struct Outside<'a> {
 impl FlowNet {
     /// Names of inlets, in the order of [`FlowNet::sums`].
     pub fn inlet_names(&self) -> impl Iterator<Item = &str> {
-        self.heads.iter().map(|head| head.name.as_str()).chain(["reservoir", "air"])
+        let heads = self.heads.iter().map(|head| head.name.as_str());
+        heads.chain(self.rains.iter().map(|rain| rain.name.as_str())).chain(["reservoir", "air"])
     }
 
     /// Condition at each node, and which inlet it is.
@@ -55,20 +58,47 @@ impl FlowNet {
                 }
             }
         }
+        self.add_rain(outside.stage, &mut found);
         found
     }
 
-    /// Water (m²/s) that enters and leaves at each inlet: heads, the reservoir, air.
-    pub fn sums(&self, conditions: &[(Condition, Option<Inlet>)], flow: &Flow) -> Vec<[f64; 2]> {
-        let mut sums = vec![[0.0; 2]; self.heads.len() + 2];
-        for ((_, inlet), inflow) in conditions.iter().zip(&flow.inflow) {
+    /// Rain on outcrops that are open to the air.
+    fn add_rain(&self, stage: usize, found: &mut [(Condition, Option<Inlet>)]) {
+        for (k, rain) in self.rains.iter().enumerate() {
+            for &(node, width) in &rain.outcrops {
+                let condition = &mut found[node as usize];
+                if condition.0 == Condition::Air {
+                    let rate = rain.rates[stage] * width;
+                    *condition = (Condition::Rain { rate }, Some(Inlet::Rain(k as u32)));
+                }
+            }
+        }
+    }
+
+    /// Number of inlets.
+    pub fn inlet_count(&self) -> usize {
+        self.heads.len() + self.rains.len() + 2
+    }
+
+    /// Water (m²/s) that enters and leaves at each inlet, and that of rain which runs off: heads, rain, the reservoir,
+    /// air.
+    pub fn sums(&self, conditions: &[(Condition, Option<Inlet>)], flow: &Flow) -> Vec<[f64; 3]> {
+        let mut sums = vec![[0.0; 3]; self.inlet_count()];
+        let after = [self.heads.len(), self.heads.len() + self.rains.len()];
+        for ((condition, inlet), inflow) in conditions.iter().zip(&flow.inflow) {
             let place = match inlet {
                 Some(Inlet::Head(head)) => *head as usize,
-                Some(Inlet::Reservoir) => self.heads.len(),
-                Some(Inlet::Air) => self.heads.len() + 1,
+                Some(Inlet::Rain(rain)) => after[0] + *rain as usize,
+                Some(Inlet::Reservoir) => after[1],
+                Some(Inlet::Air) => after[1] + 1,
                 None => continue,
             };
-            sums[place][usize::from(*inflow < 0.0)] += inflow.abs();
+            let sum = &mut sums[place];
+            sum[usize::from(*inflow < 0.0)] += inflow.abs();
+            if let Condition::Rain { rate } = condition {
+                // What wells up leaves as well, but is not rain.
+                sum[2] += (rate - inflow.max(0.0)).max(0.0);
+            }
         }
         sums
     }

@@ -7,5 +7,5 @@ mod nodes;
 mod wet;
 
 pub use conditions::{Inlet, Outside};
-pub use network::{FlowNet, FlowPiece, HeldHead, Outcrop};
+pub use network::{FallingRain, FlowNet, FlowPiece, HeldHead, Outcrop};
 pub use wet::{Wet, wet};

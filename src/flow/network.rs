@@ -30,6 +30,17 @@ pub struct HeldHead {
     pub levels: Vec<f64>,
 }
 
+/// Rain that is offered to outcrops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FallingRain {
+    /// Name.
+    pub name: String,
+    /// Its outcrops, and the length in plan (m) of the ground that drains to each.
+    pub outcrops: Vec<(u32, f64)>,
+    /// Rate (m/s) at the start of each stage.
+    pub rates: Vec<f64>,
+}
+
 /// A piece of joint as a pipe between two nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowPiece {
@@ -56,6 +67,8 @@ pub struct FlowNet {
     pub outcrops: Vec<Outcrop>,
     /// Heads that are held.
     pub heads: Vec<HeldHead>,
+    /// Rain that falls on outcrops.
+    pub rains: Vec<FallingRain>,
     /// Aperture (m) at the start by law; 0 for joints that do not conduct.
     pub apertures: Vec<f64>,
     /// Least and greatest aperture (m) of joints that conduct.
@@ -102,9 +115,9 @@ impl FlowNet {
         let pipes: Vec<[u32; 2]> = pieces.iter().map(|piece| piece.nodes).collect();
         let net = Net::new(&heights, &pipes)?;
         let places = nodes.places;
-        let (heads, apertures) = (Vec::new(), Vec::new());
+        let (heads, rains, apertures) = (Vec::new(), Vec::new(), Vec::new());
         let (range, viscosity, density) = ([0.0; 2], 1.0, 0.0);
-        Ok(Self { pieces, places, outcrops, heads, apertures, range, viscosity, density, net })
+        Ok(Self { pieces, places, outcrops, heads, rains, apertures, range, viscosity, density, net })
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not

@@ -325,7 +325,7 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
     in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
     for (k, FlowBalance { stage: of, sums, residual }) in balances.iter().enumerate() {
         at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
-        length("seepage.balances.sums", sums.len(), net.heads.len() + 2)?;
+        length("seepage.balances.sums", sums.len(), net.inlet_count())?;
         numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
         number("seepage.balances.residual", *residual, RATE)?;
     }

@@ -36,7 +36,7 @@ pub struct FlowSurvey {
     pub pieces: usize,
     /// Nodes that have a head, that of the reservoir included.
     pub heads: usize,
-    /// Nodes that are open to the air.
+    /// Nodes that are open to the air, those in rain included.
     pub outcrops: usize,
     /// Nodes within the rock at which a single piece ends.
     pub dead_ends: usize,
@@ -114,7 +114,7 @@ impl Seen<'_> {
             nodes: nodes().count(),
             pieces: open().count(),
             heads: count(|condition| matches!(condition, Condition::Held { .. })),
-            outcrops: count(|condition| matches!(condition, Condition::Air)),
+            outcrops: count(|condition| matches!(condition, Condition::Air | Condition::Rain { .. })),
             dead_ends: nodes().filter(|(condition, ends)| **ends == 1 && condition.1.is_none()).count(),
             length: lengths(true),
             isolated: lengths(false),

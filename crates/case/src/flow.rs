@@ -1,7 +1,7 @@
 //! Water of a case that flows in its joints.
 
 use crate::keys::shared::{HEIGHT, PLACE};
-use crate::keys::unit::{METRE, VISCOSITY};
+use crate::keys::unit::{METRE, RAIN, VISCOSITY};
 use crate::keys::{Range, Rule, keys};
 use crate::{CUT_LAW, Case, JointLaw};
 
@@ -13,6 +13,13 @@ pub(crate) const LAW_APERTURE: Rule = APERTURE
     .hint("0 for joints that do not conduct; leave it out for flow.aperture");
 /// Heads.
 pub(crate) const HEAD: Rule = HEIGHT.hint("the height y to which the water would rise");
+
+/// Rain: the greatest that was ever measured, over a minute, is 31 mm.
+pub(crate) const RATE: Rule = Range::from(0.0)
+    .to(1e-3)
+    .of(RAIN)
+    .usual([1e-10, 1e-4], "10 mm in an hour are 2.8e-6 m/s, 1000 mm in a year 3.2e-8 m/s")
+    .hint("10 mm in an hour are 2.8e-6 m/s, and 0 is none");
 
 /// Least and greatest aperture over those of the laws, where a case names none.
 const NARROWEST: f64 = 0.1;
@@ -53,6 +60,20 @@ keys! {
         pub edge: [[f64; 2]; 2] => PLACE,
         /// Height y (m) to which the water would rise there at the start.
         pub level: f64 => HEAD.label("Head"),
+    }
+}
+
+keys! {
+    /// Rain on a part of the surface, of which joints that crop out there take what they can; the rest runs off. Each
+    /// outcrop is offered what falls on the ground that is nearer to it than to the others on the segment.
+    pub struct Rain {
+        /// Name, for stages and results.
+        pub name: String,
+        /// Segment (m) of the surface on which it falls, at least in part level: its length in plan counts. Outcrops
+        /// below the reservoir, or with a `[[head]]` above them, have that head.
+        pub edge: [[f64; 2]; 2] => PLACE,
+        /// Rain (m/s, that is m³/s on each m² in plan) at the start that flows over the ground.
+        pub rate: f64 => RATE.label("Rain"),
     }
 }
 

@@ -47,7 +47,7 @@ pub use domain::{Domain, JointTrace, Mesh};
 pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use fix::{Axes, Fix};
-pub use flow::{Flow, Head};
+pub use flow::{Flow, Head, Rain};
 pub use fracture::{Fracture, RockFracture};
 pub use ground::{Axis, BaseMotion, FreeField, Quiet, RecordKeys};
 pub use ground_motion::GroundMotion;
@@ -170,6 +170,9 @@ pub struct Case {
     /// Heads that are held in joints.
     #[serde(default, rename = "head", skip_serializing_if = "Vec::is_empty")]
     pub heads: Vec<Head>,
+    /// Rain that joints take.
+    #[serde(default, rename = "rain", skip_serializing_if = "Vec::is_empty")]
+    pub rains: Vec<Rain>,
     /// Named places where hosts exchange values with the model.
     #[serde(default, rename = "port")]
     pub ports: Vec<Port>,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::flow::HEAD;
+use crate::flow::{HEAD, RATE};
 use crate::joint_law::{COHESION, FRICTION, TENSION};
 use crate::keys::shared::{PLACE, TIME};
 use crate::keys::unit::{NUMBER, SECOND};
@@ -80,6 +80,10 @@ keys! {
         /// first stage, which has those of `[[head]]`.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub heads: BTreeMap<String, f64> => HEAD,
+        /// Static: rates (m/s) of rain by the name of its `[[rain]]`, from the start of this stage on; not in the first
+        /// stage, which has those of `[[rain]]`.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        pub rain: BTreeMap<String, f64> => RATE,
     }
 }
 

@@ -13,20 +13,31 @@ pub(crate) const FLOW: &str = "flow.csv";
 /// Litres per minute in a m³/s.
 const LITRES_PER_MINUTE: f64 = 6e4;
 /// Head of `flow.csv`.
-const COLUMNS: [&str; 7] =
-    ["stage", "name", "in [m2/s]", "out [m2/s]", "in [L/min per m]", "out [L/min per m]", "residual [m2/s]"];
+const COLUMNS: [&str; 9] = [
+    "stage",
+    "name",
+    "in [m2/s]",
+    "out [m2/s]",
+    "run-off [m2/s]",
+    "in [L/min per m]",
+    "out [L/min per m]",
+    "run-off [L/min per m]",
+    "residual [m2/s]",
+];
 
 /// Water that enters and leaves at one place in a stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlowRecord {
     /// Name of the stage.
     pub stage: String,
-    /// Name of the head; `reservoir`, or `air` of outcrops above it.
+    /// Name of the head or rain; `reservoir`, or `air` of outcrops above it.
     pub name: String,
     /// Water that enters the joints (m²/s).
     pub enters: f64,
     /// Water that leaves them (m²/s).
     pub leaves: f64,
+    /// Rain (m²/s) that does not enter and runs off.
+    pub runs_off: f64,
     /// Greatest imbalance of a node of the net (m²/s), for a whole stage.
     pub residual: f64,
 }
@@ -40,9 +51,9 @@ impl FlowRecord {
         let of_stage = |balance: &FlowBalance| {
             let FlowBalance { stage, sums, residual } = balance.clone();
             let stage = simulation.case().stages[stage as usize].name.clone();
-            let places = net.inlet_names().zip(sums).map(move |(name, [enters, leaves])| {
+            let places = net.inlet_names().zip(sums).map(move |(name, [enters, leaves, runs_off])| {
                 let (stage, name) = (stage.clone(), name.to_owned());
-                Self { stage, name, enters, leaves, residual }
+                Self { stage, name, enters, leaves, runs_off, residual }
             });
             places.collect::<Vec<_>>()
         };
@@ -57,8 +68,9 @@ impl FlowRecord {
 pub(crate) fn write_flow(path: &Path, records: &[FlowRecord]) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     csv.write_record(COLUMNS).map_err(io::Error::from).map_err(at_path(path))?;
-    for FlowRecord { stage, name, enters, leaves, residual } in records {
-        let numbers = [*enters, *leaves, enters * LITRES_PER_MINUTE, leaves * LITRES_PER_MINUTE, *residual];
+    for FlowRecord { stage, name, enters, leaves, runs_off, residual } in records {
+        let flows = [*enters, *leaves, *runs_off];
+        let numbers = flows.into_iter().chain(flows.map(|flow| flow * LITRES_PER_MINUTE)).chain([*residual]);
         let row = [stage.clone(), name.clone()].into_iter().chain(numbers.map(|number| format!("{number:?}")));
         csv.write_record(row).map_err(io::Error::from).map_err(at_path(path))?;
     }

@@ -34,7 +34,7 @@ fn a_run_tells_the_flow_of_its_stages() {
     let row: Vec<&str> = text.lines().nth(1).expect("a row").split(',').collect();
     assert_eq!(row[..2], ["gravity", "crack"]);
     near(row[2].parse().expect("a number"), exact);
-    near(row[4].parse().expect("a number"), exact * 6e4);
+    near(row[5].parse().expect("a number"), exact * 6e4);
     let wet = std::fs::read_dir(options.directory.join("frames")).expect("frames").filter_map(Result::ok);
     assert!(wet.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with("water")));
     (case.flow, case.heads) = (None, Vec::new());

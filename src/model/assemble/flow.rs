@@ -32,11 +32,12 @@ pub(super) fn net(
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
     net.heads = heads(case, &net, faces.tolerance)?;
+    net.rains = super::rain::rains(case, &net, faces.tolerance)?;
     refuse_tight(case, &net)?;
     Ok(Some(net))
 }
 
-fn invalid(key: &str, message: String) -> Invalid {
+pub(super) fn invalid(key: &str, message: String) -> Invalid {
     Invalid { key: key.to_owned(), message }
 }
 
@@ -130,11 +131,12 @@ pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
         Condition::Held { head } => Some(*head),
         _ => None,
     };
+    let rains = |(condition, _): &At| matches!(condition, Condition::Rain { rate } if *rate > 0.0);
     let mut warnings = Vec::new();
-    if stages.iter().flatten().all(|at| held(at).is_none()) {
+    if stages.iter().flatten().all(|at| held(at).is_none() && !rains(at)) {
         warnings.push(
-            "flow: no water enters, so that all joints are dry: no [[head]] is above the joints that it meets, and \
-             none crops out below [water]"
+            "flow: no water enters, so that all joints are dry: no [[head]] is above the joints that it meets, none \
+             crops out below [water], and no [[rain]] falls"
                 .to_owned(),
         );
     } else if !digs(case) && stages.iter().all(|stage| is_still(net, stage)) {
@@ -179,8 +181,9 @@ fn is_still(net: &FlowNet, conditions: &[At]) -> bool {
     for ((condition, _), place) in conditions.iter().zip(&net.places) {
         match condition {
             Condition::Held { head } => (low, high) = (low.min(*head), high.max(*head)),
-            Condition::Air => lowest = lowest.min(place.y),
-            _ => {}
+            Condition::Rain { rate } if *rate > 0.0 => return false,
+            Condition::Air | Condition::Rain { .. } => lowest = lowest.min(place.y),
+            Condition::Free { .. } => {}
         }
     }
     high - low <= EQUAL && lowest >= high - EQUAL

@@ -13,6 +13,7 @@ mod locked;
 mod memory;
 mod ports;
 mod quiet;
+mod rain;
 mod rock;
 mod sections;
 mod slips;

@@ -27,6 +27,8 @@ pub const DENSITY: Unit = unit("kg/m³", &[("t/m³", 1e3), ("kN/m³", 1e3 / 9.81
 pub const PASCAL_PER_METRE: Unit = unit("Pa/m", &[("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9)]);
 pub const ACCELERATION: Unit = unit("m/s²", &[("cm/s²", 1e-2), ("mm/s²", 1e-3), ("km/s²", 1e3)]);
 pub const SPEED: Unit = unit("m/s", &[("cm/s", 1e-2), ("mm/s", 1e-3)]);
+/// Of rain.
+pub const RAIN: Unit = unit("m/s", &[("mm/h", 1e-3 / 3600.0), ("mm/day", 1e-3 / 86400.0)]);
 pub const TURN: Unit = unit("rad/s", &[]);
 pub const SECOND: Unit = unit("s", &[("ms", 1e-3), ("hours", 3600.0)]);
 pub const ENERGY: Unit = unit("J/m²", &[("kJ/m²", 1e3), ("N/mm", 1e3)]);

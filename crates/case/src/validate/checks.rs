@@ -194,6 +194,12 @@ impl<'a> Names<'a> {
         Self { what: "head", remedy: "add [[head]] with this `name`", known }
     }
 
+    /// Returns the rain of a case.
+    pub fn of_rain(case: &'a Case) -> Self {
+        let known = case.rains.iter().map(|rain| rain.name.as_str()).collect();
+        Self { what: "rain", remedy: "add [[rain]] with this `name`", known }
+    }
+
     /// Returns the dynamic stages of a case.
     pub fn of_dynamic_stages(case: &'a Case) -> Self {
         let dynamic = case.stages.iter().filter(|stage| stage.kind == StageKind::Dynamic);

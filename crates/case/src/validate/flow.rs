@@ -4,7 +4,7 @@ use super::checks::{Names, each, segment, unique};
 use super::ports::word;
 use crate::key::{Check, Key, fail};
 use crate::keys::Plain;
-use crate::{Case, Flow, Head, Integrator, Stage, StageKind};
+use crate::{Case, Flow, Head, Integrator, Rain, Stage, StageKind};
 
 /// Names of places in results that are no heads.
 pub const PLACES: [&str; 2] = ["reservoir", "air"];
@@ -15,7 +15,8 @@ pub const PLACES: [&str; 2] = ["reservoir", "air"];
 /// The first value that cannot be used, or that has no effect.
 pub fn validate_flow(root: &Key, case: &Case) -> Check {
     each(&root.field("head"), &case.heads, validate_head)?;
-    unique(&root.field("head"), "head", case.heads.iter().map(|head| Some(head.name.as_str())))?;
+    each(&root.field("rain"), &case.rains, validate_rain)?;
+    validate_names(root, case)?;
     let Some(flow) = &case.flow else { return refuse_alone(root, case) };
     let key = root.field("flow");
     flow.check(&key)?;
@@ -38,19 +39,52 @@ pub fn validate_flow(root: &Key, case: &Case) -> Check {
 
 fn validate_head(key: &Key, head: &Head) -> Check {
     head.check(key)?;
-    word(&key.field("name"), &head.name, "head")?;
-    if PLACES.contains(&head.name.as_str()) {
-        let message = format!("is {:?}, as results name a place that is no head; rename the head", head.name);
-        return fail(&key.field("name"), message);
-    }
+    validate_name(key, &head.name, "head")?;
     segment(&key.field("edge"), &head.edge)
+}
+
+fn validate_rain(key: &Key, rain: &Rain) -> Check {
+    rain.check(key)?;
+    validate_name(key, &rain.name, "rain")?;
+    segment(&key.field("edge"), &rain.edge)?;
+    let [[a, _], [b, _]] = rain.edge;
+    if a == b {
+        let message = "is vertical, so that no rain falls on it; give two points of the surface whose x differ";
+        return fail(&key.field("edge"), message);
+    }
+    Ok(())
+}
+
+fn validate_name(key: &Key, name: &str, what: &str) -> Check {
+    let key = key.field("name");
+    word(&key, name, what)?;
+    if PLACES.contains(&name) {
+        return fail(&key, format!("is {name:?}, as results name a place that is no {what}; rename the {what}"));
+    }
+    Ok(())
+}
+
+/// Results tell heads and rain apart by name.
+fn validate_names(root: &Key, case: &Case) -> Check {
+    let heads: Vec<&str> = case.heads.iter().map(|head| head.name.as_str()).collect();
+    let rains: Vec<&str> = case.rains.iter().map(|rain| rain.name.as_str()).collect();
+    unique(&root.field("head"), "head", heads.iter().copied().map(Some))?;
+    unique(&root.field("rain"), "rain", rains.iter().copied().map(Some))?;
+    match rains.iter().position(|name| heads.contains(name)) {
+        Some(k) => {
+            let message = format!("is {:?}, as a head of the case is called; results need a name for each", rains[k]);
+            fail(&root.field("rain").index(k).field("name"), format!("{message}, rename one of both"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Keys that have no effect without `[flow]`.
 fn refuse_alone(root: &Key, case: &Case) -> Check {
     let remedy = "add `[flow]` or remove it";
-    if !case.heads.is_empty() {
-        return fail(&root.field("head").index(0), format!("has no effect without [flow], which it is for; {remedy}"));
+    let tables = [("head", case.heads.is_empty()), ("rain", case.rains.is_empty())];
+    if let Some((table, _)) = tables.into_iter().find(|(_, is_empty)| !is_empty) {
+        return fail(&root.field(table).index(0), format!("has no effect without [flow], which it is for; {remedy}"));
     }
     match case.joint_laws.iter().find(|(_, law)| law.aperture.is_some()) {
         Some((name, _)) => {
@@ -112,16 +146,19 @@ fn refuse_other_blocks(key: &Key, case: &Case) -> Check {
     fail(key, format!("cannot follow blocks that break or that a stage cuts, as {what} does; remove one of both"))
 }
 
-/// Checks the heads that a stage brings.
+/// Checks the heads and the rain that a stage brings.
 ///
 /// # Errors
 /// The first value that cannot be used.
-pub fn validate_heads(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
-    for name in stage.heads.keys() {
+pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
+    let (heads, rain) = (key.field("heads"), key.field("rain"));
+    let of_heads = stage.heads.keys().map(|name| (&heads, name, Names::of_heads(case)));
+    let of_rain = stage.rain.keys().map(|name| (&rain, name, Names::of_rain(case)));
+    for (key, name, names) in of_heads.chain(of_rain) {
+        names.must_hold(key, name)?;
         let own = key.field(name);
-        Names::of_heads(case).must_hold(key, name)?;
         if place == 0 {
-            let message = "is in the first stage, which has the level of its [[head]]; give it there, or in a later \
+            let message = "is in the first stage, which has the value of its own table; give it there, or in a later \
                            stage";
             return fail(&own, message);
         }

@@ -27,7 +27,7 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
         validate_laws(&key, stage, case, &laws)?;
         validate_fixities(&key, stage, &fixes)?;
         validate_water(&key.field("water"), i, stage, case)?;
-        flow::validate_heads(&key.field("heads"), i, stage, case)?;
+        flow::validate_changes(&key, i, stage, case)?;
     }
     unique(key, "stage", case.stages.iter().map(|stage| Some(stage.name.as_str())))
 }
