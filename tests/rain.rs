@@ -99,8 +99,12 @@ fn a_mound_under_rain_is_that_of_dupuit() {
 /// A stage in rain, another and a third with more, through bytes in the middle when `stopped`.
 fn run(threads: usize, stopped: bool) -> State {
     let more = "[[joint]]\npoints = [[0, 3], [10, 5]]\n[[joint]]\npoints = [[6, 0], [8, 8]]\n";
-    let text = plate(0.2 * T, more, "[[stage]]\nname = \"storm\"\nkind = \"static\"\nduration = 0.3\n\
-                                     rain = { sky = 1e-6 }\n");
+    let text = plate(
+        0.2 * T,
+        more,
+        "[[stage]]\nname = \"storm\"\nkind = \"static\"\nduration = 0.3\n\
+                                     rain = { sky = 1e-6 }\n",
+    );
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| {
         let mut one = simulation(&text);
@@ -145,7 +149,7 @@ fn rain_that_cannot_fall_is_told() {
         (text.replace("[[0, 8], [10, 8]]\nrate", "[[4, 8], [10, 8]]\nrate"), "rain[0].edge", "no joint crops out"),
         (text.replace("[[0, 8], [10, 8]]\nrate", "[[0, 8], [0, 0]]\nrate"), "rain[0].edge", "is vertical"),
         (plate(-1e-7, "", ""), "rain[0].rate", "must be at least 0"),
-        (plate(10.0, "", ""), "rain[0].rate", "mm/h"),
+        (plate(10.0, "", ""), "rain[0].rate", "10 mm in an hour are 2.8e-6 m/s"),
         (plate(1e-7, second, ""), "rain[1].edge", "on which rain \"sky\" falls too"),
         (plate(1e-7, &second.replace("cloud", "sky"), ""), "rain[1].name", "sky"),
         (text.replace("\"sky\"", "\"air\""), "rain[0].name", "rename the rain"),
@@ -155,7 +159,8 @@ fn rain_that_cannot_fall_is_told() {
         assert!(told.contains(&format!("{key}: ")) && told.contains(message), "{text}\n{told}");
     }
     let stage = |kind: &str, name: &str, rate: f64| {
-        let stage = format!("[[stage]]\nname = \"next\"\nkind = \"{kind}\"\nduration = 1.0\nrain = {{ {name} = {rate:?} }}\n");
+        let stage =
+            format!("[[stage]]\nname = \"next\"\nkind = \"{kind}\"\nduration = 1.0\nrain = {{ {name} = {rate:?} }}\n");
         refusal(&plate(1e-7, "", &stage))
     };
     assert!(stage("static", "ski", 1e-7).contains("no rain is named \"ski\", did you mean \"sky\"?"));

@@ -50,7 +50,8 @@ fn shares(net: &FlowNet, [a, b]: [Point; 2], tolerance: f64) -> Vec<(u32, f64)> 
         let place = *node as usize;
         net.outcrops[place] != Outcrop::None && segment::distance(net.places[place], a, b) <= tolerance
     };
-    let mut nodes: Vec<(f64, u32)> = (0..net.places.len() as u32).filter(is_on).map(|node| (along(node), node)).collect();
+    let mut nodes: Vec<(f64, u32)> =
+        (0..net.places.len() as u32).filter(is_on).map(|node| (along(node), node)).collect();
     nodes.sort_by(|(s, i), (t, j)| s.total_cmp(t).then(i.cmp(j)));
     let borders: Vec<f64> = nodes.windows(2).map(|pair| 0.5 * (pair[0].0 + pair[1].0)).collect();
     let plan = (b - a).x.abs();

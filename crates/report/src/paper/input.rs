@@ -30,8 +30,17 @@ pub fn input_chapter(records: &Records) -> String {
         + &chapter("Rock and joints", &[rocks(input), laws(input), sets(input), joints(input)].concat())
         + &chapter(
             "Stress, water and loads",
-            &[in_situ(input), water(input), drawdowns(input), flow(input), heads(input), loads(input), motions(input)]
-                .concat(),
+            &[
+                in_situ(input),
+                water(input),
+                drawdowns(input),
+                flow(input),
+                heads(input),
+                rains(input),
+                loads(input),
+                motions(input),
+            ]
+            .concat(),
         )
         + &chapter("Bolts as designed", &bolts(input))
         + &chapter("Stages as planned", &stages(input))
@@ -157,15 +166,30 @@ fn flow(input: &Value) -> String {
 
 /// Heads at the start and in later stages.
 fn heads(input: &Value) -> String {
-    let row = |name: &str, stage: &str, level: &Value| -> Vec<Cell> {
-        vec![name.into(), stage.into(), length(level, Typed).into()]
-    };
-    let heads = entries(&input["heads"]).iter();
-    let mut rows: Vec<Vec<Cell>> = heads.map(|head| row(text(&head["name"]), "start", &head["level"])).collect();
+    let level = |level: &Value| length(level, Typed).into();
+    changing(input, ("heads", "level", "heads"), level, ("Heads in joints", ["Head", "Stage", "Level"]))
+}
+
+/// Rain at the start and in later stages.
+fn rains(input: &Value) -> String {
+    let rate = |rate: &Value| plain(rate, "m/s", Typed).into();
+    changing(input, ("rains", "rate", "rain"), rate, ("Rain that joints take", ["Rain", "Stage", "Rate"]))
+}
+
+/// Named values of one list at the start, under its own key, and those that stages bring.
+fn changing(
+    input: &Value,
+    (list, key, of_stage): (&str, &str, &str),
+    cell: impl Fn(&Value) -> Cell,
+    (title, columns): (&str, [&str; 3]),
+) -> String {
+    let row = |name: &str, stage: &str, value: &Value| vec![name.into(), stage.into(), cell(value)];
+    let own = entries(&input[list]).iter();
+    let mut rows: Vec<Vec<Cell>> = own.map(|entry| row(text(&entry["name"]), "start", &entry[key])).collect();
     for stage in entries(&input["stages"]) {
-        rows.extend(named(&stage["heads"]).map(|(name, level)| row(name, text(&stage["name"]), level)));
+        rows.extend(named(&stage[of_stage]).map(|(name, value)| row(name, text(&stage["name"]), value)));
     }
-    part("Heads in joints", &table(&["Head", "Stage", "Level"], &rows))
+    part(title, &table(&columns, &rows))
 }
 
 /// Points as `(x, y)` in metres.
