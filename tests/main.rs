@@ -21,6 +21,7 @@ mod cosimulation;
 mod crossings;
 mod crumbs;
 mod determinism;
+mod drains;
 mod ends_and_meshes;
 mod fast_failures;
 mod flow;

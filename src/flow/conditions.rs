@@ -1,4 +1,4 @@
-//! Conditions at the nodes of a net: heads, rain, the reservoir, air.
+//! Conditions at the nodes of a net: heads, rain, drains, the reservoir, air.
 
 use enmm_seepage::{Condition, Flow};
 
@@ -11,6 +11,8 @@ pub enum Inlet {
     Head(u32),
     /// Rain by its index.
     Rain(u32),
+    /// A drain by its index.
+    Drain(u32),
     /// Outcrops below the surface of the reservoir.
     Reservoir,
     /// Outcrops open to the air.
@@ -26,13 +28,21 @@ pub struct Outside<'a> {
     pub dug: &'a [Outcrop],
     /// Depth (m) below the surface of the reservoir at each node; negative above it, or where there is none.
     pub depths: &'a [f64],
+    /// Whether joints conduct at each node.
+    pub conducts: &'a [bool],
+}
+
+/// Whether water can leave or enter a piece of net at a node with a condition; pumps take what others give.
+pub fn is_open(condition: &Condition) -> bool {
+    !matches!(condition, Condition::Free { .. })
 }
 
 impl FlowNet {
     /// Names of inlets, in the order of [`FlowNet::sums`].
     pub fn inlet_names(&self) -> impl Iterator<Item = &str> {
         let heads = self.heads.iter().map(|head| head.name.as_str());
-        heads.chain(self.rains.iter().map(|rain| rain.name.as_str())).chain(["reservoir", "air"])
+        let rains = self.rains.iter().map(|rain| rain.name.as_str());
+        heads.chain(rains).chain(self.drains.iter().map(|drain| drain.name.as_str())).chain(["reservoir", "air"])
     }
 
     /// Condition at each node, and which inlet it is.
@@ -59,7 +69,24 @@ impl FlowNet {
             }
         }
         self.add_rain(outside.stage, &mut found);
+        self.add_drains(outside, &mut found);
         found
+    }
+
+    /// Drains that act, where joints within the rock cross them.
+    fn add_drains(&self, Outside { stage, conducts, .. }: Outside, found: &mut [(Condition, Option<Inlet>)]) {
+        for (k, drain) in self.drains.iter().enumerate().filter(|(_, drain)| drain.active[stage]) {
+            let is_free = |&&node: &&u32| found[node as usize].1.is_none() && conducts[node as usize];
+            let nodes: Vec<u32> = drain.nodes.iter().filter(is_free).copied().collect();
+            for &node in &nodes {
+                let condition = match drain.pump {
+                    Some(pump) => Condition::Free { source: -pump / nodes.len() as f64 },
+                    None if drain.mouth > self.places[node as usize].y => Condition::Held { head: drain.mouth },
+                    None => Condition::Air,
+                };
+                found[node as usize] = (condition, Some(Inlet::Drain(k as u32)));
+            }
+        }
     }
 
     /// Rain on outcrops that are open to the air.
@@ -77,20 +104,22 @@ impl FlowNet {
 
     /// Number of inlets.
     pub fn inlet_count(&self) -> usize {
-        self.heads.len() + self.rains.len() + 2
+        self.heads.len() + self.rains.len() + self.drains.len() + 2
     }
 
-    /// Water (m²/s) that enters and leaves at each inlet, and that of rain which runs off: heads, rain, the reservoir,
-    /// air.
+    /// Water (m²/s) that enters and leaves at each inlet, and that of rain which runs off: heads, rain, drains, the
+    /// reservoir, air.
     pub fn sums(&self, conditions: &[(Condition, Option<Inlet>)], flow: &Flow) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.inlet_count()];
-        let after = [self.heads.len(), self.heads.len() + self.rains.len()];
+        let heads = self.heads.len();
+        let after = [heads, heads + self.rains.len(), heads + self.rains.len() + self.drains.len()];
         for ((condition, inlet), inflow) in conditions.iter().zip(&flow.inflow) {
             let place = match inlet {
                 Some(Inlet::Head(head)) => *head as usize,
                 Some(Inlet::Rain(rain)) => after[0] + *rain as usize,
-                Some(Inlet::Reservoir) => after[1],
-                Some(Inlet::Air) => after[1] + 1,
+                Some(Inlet::Drain(drain)) => after[1] + *drain as usize,
+                Some(Inlet::Reservoir) => after[2],
+                Some(Inlet::Air) => after[2] + 1,
                 None => continue,
             };
             let sum = &mut sums[place];

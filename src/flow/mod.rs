@@ -2,10 +2,12 @@
 //! its water presses. Knows nothing of time.
 
 mod conditions;
+mod drains;
 mod network;
 mod nodes;
 mod wet;
 
-pub use conditions::{Inlet, Outside};
+pub use conditions::{Inlet, Outside, is_open};
+pub use drains::{Drain, is_on, part};
 pub use network::{FallingRain, FlowNet, FlowPiece, HeldHead, Outcrop};
 pub use wet::{Wet, wet};

@@ -5,6 +5,7 @@ use enmm_seepage::{Net, Refused, law};
 use crate::contact::{Boundary, EdgeId, Facing, Facings, LawId};
 use crate::geometry::Point;
 
+use super::drains::Drain;
 use super::nodes::Nodes;
 
 /// Place outside of the rock at a node of the net.
@@ -69,6 +70,8 @@ pub struct FlowNet {
     pub heads: Vec<HeldHead>,
     /// Rain that falls on outcrops.
     pub rains: Vec<FallingRain>,
+    /// Drains.
+    pub drains: Vec<Drain>,
     /// Aperture (m) at the start by law; 0 for joints that do not conduct.
     pub apertures: Vec<f64>,
     /// Least and greatest aperture (m) of joints that conduct.
@@ -83,7 +86,8 @@ pub struct FlowNet {
 
 impl FlowNet {
     /// Finds nodes and pieces; `law` gives the law of an edge, `outside` the place that an edge of the outline meets.
-    /// Apertures and heads are still to be filled in.
+    /// Apertures, heads, rain and drains are still to be
+    /// filled in.
     ///
     /// # Errors
     /// More pieces than a net can have.
@@ -115,9 +119,9 @@ impl FlowNet {
         let pipes: Vec<[u32; 2]> = pieces.iter().map(|piece| piece.nodes).collect();
         let net = Net::new(&heights, &pipes)?;
         let places = nodes.places;
-        let (heads, rains, apertures) = (Vec::new(), Vec::new(), Vec::new());
+        let (heads, rains, drains, apertures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (range, viscosity, density) = ([0.0; 2], 1.0, 0.0);
-        Ok(Self { pieces, places, outcrops, heads, rains, apertures, range, viscosity, density, net })
+        Ok(Self { pieces, places, outcrops, heads, rains, drains, apertures, range, viscosity, density, net })
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not
@@ -126,6 +130,15 @@ impl FlowNet {
         let start = self.apertures[law.index()];
         let opening = if closes { opening } else { opening.max(0.0) };
         if start > 0.0 { (start + opening).clamp(self.range[0], self.range[1]) } else { 0.0 }
+    }
+
+    /// Whether a piece conducts at each node.
+    pub fn conducting(&self, conductance: &[f64]) -> Vec<bool> {
+        let mut conducts = vec![false; self.places.len()];
+        for (piece, _) in self.pieces.iter().zip(conductance).filter(|(_, g)| **g > 0.0) {
+            piece.nodes.iter().for_each(|&node| conducts[node as usize] = true);
+        }
+        conducts
     }
 
     /// Conductance (m²/s per m of head) of a piece with these apertures (m) at its ends, in water of a unit weight

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::contact::EdgeId;
 use crate::cover::BlockId;
-use crate::flow::{FlowNet, FlowPiece, Inlet, Outcrop, Outside};
+use crate::flow::{Drain, FlowNet, FlowPiece, Inlet, Outcrop, Outside, is_open};
 use crate::geometry::{Point, Vector};
 use crate::state::{FlowBalance, Model, Seepage, State};
 
@@ -26,6 +26,9 @@ impl Simulation {
         Ok(())
     }
 }
+
+/// Share of its flow below which a pump runs dry: the rest is the round-off of flows.
+const DRY: f64 = 1.0 - 1e-9;
 
 /// Size of the net of joints in which water flows, and what of it water reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -49,6 +52,33 @@ pub struct FlowSurvey {
 }
 
 impl Simulation {
+    /// Doubts about the drains of the flow that was found at the start of the stage: pumps that take less than they
+    /// should, and drains from which water flows into joints.
+    pub fn dry_drains(&self) -> Vec<String> {
+        let (Some(net), Some(seepage)) = (&self.built.model.flow, &self.state.seepage) else { return Vec::new() };
+        let stage = self.state.stage as usize;
+        let Some(balance) = seepage.balances.last().filter(|balance| balance.stage as usize == stage) else {
+            return Vec::new();
+        };
+        let active = net.drains.iter().enumerate().filter(|(_, drain)| drain.active[stage]);
+        let doubt = |(k, drain): (usize, &Drain)| {
+            let [enters, leaves, _] = balance.sums[net.heads.len() + net.rains.len() + k];
+            let name = &drain.name;
+            match drain.pump {
+                Some(pump) if leaves < DRY * pump => Some(format!(
+                    "the pump of drain {name:?} runs dry: it takes {leaves:.3e} m²/s of {pump:.3e} m²/s, which is all \
+                     that arrives; let it take less, or lead it deeper"
+                )),
+                None if enters > (1.0 - DRY) * leaves => Some(format!(
+                    "drain {name:?} brings {enters:.3e} m²/s of water into joints that are below its mouth: lay its \
+                     mouth lower, or give it a `pump`"
+                )),
+                _ => None,
+            }
+        };
+        active.filter_map(doubt).collect()
+    }
+
     /// The net of joints now, if water flows in them.
     pub fn flow_survey(&self) -> Option<FlowSurvey> {
         let (model, state) = (&self.built.model, &self.state);
@@ -82,7 +112,7 @@ impl Seen<'_> {
     fn steady(&self) -> Result<Seepage, Failure> {
         let conductance = self.conductance();
         let flooded = self.flooded();
-        let conditions = self.conditions(&flooded);
+        let conditions = self.conditions(&flooded, &conductance);
         let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
         let flow = self.net.net.steady(&conductance, &at_nodes)?;
         let (stage, sums) = (self.stage as u32, self.net.sums(&conditions, &flow));
@@ -94,12 +124,12 @@ impl Seen<'_> {
 
     fn survey(&self) -> FlowSurvey {
         let conductance = self.conductance();
-        let conditions = self.conditions(&self.flooded());
+        let conditions = self.conditions(&self.flooded(), &conductance);
         let labels = self.net.net.pieces(&conductance);
         let (mut ends, mut fed) = (vec![0_u32; labels.len()], vec![false; labels.len()]);
         let open = || self.net.pieces.iter().zip(&conductance).filter(|(_, g)| **g > 0.0);
         open().for_each(|(piece, _)| piece.nodes.iter().for_each(|&node| ends[node as usize] += 1));
-        for (label, _) in labels.iter().zip(&conditions).filter(|(_, condition)| condition.1.is_some()) {
+        for (label, _) in labels.iter().zip(&conditions).filter(|(_, condition)| is_open(&condition.0)) {
             fed[*label as usize] = true;
         }
         let nodes = || conditions.iter().zip(&ends).filter(|(_, ends)| **ends > 0);
@@ -140,9 +170,10 @@ impl Seen<'_> {
     }
 
     /// Condition at each node, and which inlet it is.
-    fn conditions(&self, flooded: &[bool]) -> Vec<(Condition, Option<Inlet>)> {
+    fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
         let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
-        self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths })
+        let conducts = self.net.conducting(conductance);
+        self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths, conducts: &conducts })
     }
 
     fn block(&self, edge: EdgeId) -> BlockId {

@@ -24,8 +24,8 @@ clone_without_allocating! {
 pub struct FlowBalance {
     /// Stage.
     pub stage: u32,
-    /// Water (m²/s) that enters and leaves at each head, at outcrops in rain, from the reservoir and from the air, and
-    /// rain that has not entered and runs off.
+    /// Water (m²/s) that enters and leaves at each head, at outcrops in rain, at each drain, from the reservoir and
+    /// from the air, and rain that has not entered and runs off.
     pub sums: Vec<[f64; 3]>,
     /// Greatest imbalance of a node (m²/s).
     pub residual: f64,

@@ -1,9 +1,9 @@
 //! Water of a case that flows in its joints.
 
 use crate::keys::shared::{HEIGHT, PLACE};
-use crate::keys::unit::{METRE, RAIN, VISCOSITY};
+use crate::keys::unit::{FLOW, METRE, RAIN, VISCOSITY};
 use crate::keys::{Range, Rule, keys};
-use crate::{CUT_LAW, Case, JointLaw};
+use crate::{CUT_LAW, Case, JointLaw, PointList};
 
 /// Hydraulic apertures of joints.
 const APERTURE: Rule = Range::above(0.0).to(1.0).of(METRE).usual([1e-6, 2e-2], "joints have 1e-5 to 1e-3 m");
@@ -20,6 +20,13 @@ pub(crate) const RATE: Rule = Range::from(0.0)
     .of(RAIN)
     .usual([1e-10, 1e-4], "10 mm in an hour are 2.8e-6 m/s, 1000 mm in a year 3.2e-8 m/s")
     .hint("10 mm in an hour are 2.8e-6 m/s, and 0 is none");
+
+/// Pumps.
+const PUMP: Rule = Range::above(0.0)
+    .to(1.0)
+    .of(FLOW)
+    .usual([1e-9, 1e-2], "1 litre per minute from each metre of depth is 1.7e-5 m²/s")
+    .hint("leave it out for water that flows out freely");
 
 /// Least and greatest aperture over those of the laws, where a case names none.
 const NARROWEST: f64 = 0.1;
@@ -74,6 +81,26 @@ keys! {
         pub edge: [[f64; 2]; 2] => PLACE,
         /// Rain (m/s, that is m³/s on each m² in plan) at the start that flows over the ground.
         pub rate: f64 => RATE.label("Rain"),
+    }
+}
+
+keys! {
+    /// A bore hole or a gallery that drains the joints which it crosses, or a well from which a pump takes water. The
+    /// section is one metre deep, so that it stands for a row of drains as close as apertures of joints let them act
+    /// together.
+    pub struct Drain {
+        /// Name, for stages and results.
+        pub name: String,
+        /// At least two points (m), its mouth first. Joints that it crosses have the head of their own height there,
+        /// or that of the mouth where it is higher.
+        pub points: PointList => PLACE,
+        /// Whether it acts from the start on; if not, a stage puts it in place with `drain`.
+        #[serde(default = "crate::keys::yes")]
+        pub active: bool,
+        /// Flow (m²/s, that is m³/s from each metre of depth) that a pump takes, the same from each joint that the drain
+        /// crosses, and less where a joint runs dry; default: none, so that the water flows out freely.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub pump: Option<f64> => PUMP.label("Pump"),
     }
 }
 

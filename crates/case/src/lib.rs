@@ -47,7 +47,7 @@ pub use domain::{Domain, JointTrace, Mesh};
 pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use fix::{Axes, Fix};
-pub use flow::{Flow, Head, Rain};
+pub use flow::{Drain, Flow, Head, Rain};
 pub use fracture::{Fracture, RockFracture};
 pub use ground::{Axis, BaseMotion, FreeField, Quiet, RecordKeys};
 pub use ground_motion::GroundMotion;
@@ -173,6 +173,9 @@ pub struct Case {
     /// Rain that joints take.
     #[serde(default, rename = "rain", skip_serializing_if = "Vec::is_empty")]
     pub rains: Vec<Rain>,
+    /// Drains and wells that cross joints.
+    #[serde(default, rename = "drain", skip_serializing_if = "Vec::is_empty")]
+    pub drains: Vec<Drain>,
     /// Named places where hosts exchange values with the model.
     #[serde(default, rename = "port")]
     pub ports: Vec<Port>,

@@ -7,12 +7,12 @@ use crate::key::Key;
 use crate::keys::{Rule, unit};
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{
-    Bolt, BoltPattern, Case, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh, Output, Port,
-    Rain, RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
+    Bolt, BoltPattern, Case, Drain, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh,
+    Output, Port, Rain, RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
 };
 
 /// Tables whose keys have usual values, by their place in a case: without the numbers of lists, and with `*` for names.
-const TABLES: [(&str, &[Rule]); 18] = [
+const TABLES: [(&str, &[Rule]); 19] = [
     ("rock.*", Rock::KEYS),
     ("rock.*.hoek_brown", HoekBrown::KEYS),
     ("rock.*.fracture", RockFracture::KEYS),
@@ -31,6 +31,7 @@ const TABLES: [(&str, &[Rule]); 18] = [
     ("water", Water::KEYS),
     ("flow", Flow::KEYS),
     ("rain", Rain::KEYS),
+    ("drain", Drain::KEYS),
 ];
 
 /// Usual values of what is measured: peaks of records of earthquakes. Below the first a record hardly moves anything,

@@ -84,6 +84,9 @@ keys! {
         /// stage, which has those of `[[rain]]`.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub rain: BTreeMap<String, f64> => RATE,
+        /// Static: drains by name that act from the start of this stage on.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub drain: Vec<String>,
     }
 }
 

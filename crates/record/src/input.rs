@@ -34,6 +34,7 @@ pub fn input_record(loaded: &LoadedCase) -> Value {
     if let Some(flow) = &typed.flow {
         record["flow"] = json!(flow);
         record["heads"] = typed.heads.iter().map(|head| without(json!(head), &["edge"])).collect();
+        record["drains"] = typed.drains.iter().map(|drain| without(json!(drain), &["points"])).collect();
         record["rains"] = typed.rains.iter().map(|rain| without(json!(rain), &["edge"])).collect();
     }
     record

@@ -3,7 +3,7 @@
 use enmm_seepage::Condition;
 
 use crate::contact::{Boundary, EdgeId, Facings, LawId};
-use crate::flow::{FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside};
+use crate::flow::{self, FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside, is_open};
 use crate::geometry::{Point, segment};
 use crate::model::case::{self, Case, Flow, Head, Invalid};
 use crate::state::{Model, Water};
@@ -18,9 +18,11 @@ pub(super) fn net(
     faces: &Faces,
     water: Option<&Water>,
 ) -> Result<Option<FlowNet>, Invalid> {
-    let (Some(flow), Some(range)) = (&case.flow, case.aperture_range()) else { return Ok(None) };
+    let (Some(keys), Some(range)) = (&case.flow, case.aperture_range()) else { return Ok(None) };
     let boundary = faces.boundary;
-    let facings = Facings::of(boundary, &joints.traces);
+    let mut facings = Facings::of(boundary, &joints.traces);
+    let lines = super::drains::lines(case);
+    facings.pieces = flow::part(&facings.pieces, &lines, faces.tolerance);
     let law = |edge: EdgeId| boundary.trace[edge].map_or(joints.default_law, |trace| joints.traces[trace.index()].1);
     let mut net = FlowNet::new(boundary, &facings, law, outside(case, boundary, faces, water))
         .map_err(|error| invalid("flow", format!("the net of joints cannot be built: {error}; use fewer joints")))?;
@@ -28,11 +30,12 @@ pub(super) fn net(
         return Err(invalid("flow", "has no effect: no joint parts blocks; add joints or remove [flow]".into()));
     }
     net.range = range;
-    net.viscosity = flow.viscosity;
+    net.viscosity = keys.viscosity;
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
     net.heads = heads(case, &net, faces.tolerance)?;
     net.rains = super::rain::rains(case, &net, faces.tolerance)?;
+    net.drains = super::drains::drains(case, &net, &lines, faces.tolerance)?;
     refuse_tight(case, &net)?;
     Ok(Some(net))
 }
@@ -172,7 +175,14 @@ fn conditions(net: &FlowNet, model: &Model, stage: usize) -> Vec<At> {
         surface.map_or(-1.0, |surface| surface.depth(surface.level, *at))
     };
     let depths: Vec<f64> = net.places.iter().map(depth).collect();
-    net.conditions(Outside { stage, dug: &vec![Outcrop::None; depths.len()], depths: &depths })
+    let conducts = net.conducting(&at_start(net));
+    net.conditions(Outside { stage, dug: &vec![Outcrop::None; depths.len()], depths: &depths, conducts: &conducts })
+}
+
+/// A conductance of 1 of each piece that conducts at the start, else 0.
+fn at_start(net: &FlowNet) -> Vec<f64> {
+    let of = |piece: &FlowPiece| if net.apertures[piece.law.index()] > 0.0 { 1.0 } else { 0.0 };
+    net.pieces.iter().map(of).collect()
 }
 
 /// Whether all heads are equal, and no outcrop is below them.
@@ -183,6 +193,7 @@ fn is_still(net: &FlowNet, conditions: &[At]) -> bool {
             Condition::Held { head } => (low, high) = (low.min(*head), high.max(*head)),
             Condition::Rain { rate } if *rate > 0.0 => return false,
             Condition::Air | Condition::Rain { .. } => lowest = lowest.min(place.y),
+            Condition::Free { source } if *source < 0.0 => return false,
             Condition::Free { .. } => {}
         }
     }
@@ -192,10 +203,9 @@ fn is_still(net: &FlowNet, conditions: &[At]) -> bool {
 /// Joints from which no water leaves and to which none comes.
 fn isolated(net: &FlowNet, conditions: &[At]) -> Option<String> {
     let open = |piece: &FlowPiece| net.apertures[piece.law.index()] > 0.0;
-    let conductance: Vec<f64> = net.pieces.iter().map(|piece| if open(piece) { 1.0 } else { 0.0 }).collect();
-    let labels = net.net.pieces(&conductance);
+    let labels = net.net.pieces(&at_start(net));
     let mut fed = vec![false; labels.len()];
-    for (label, _) in labels.iter().zip(conditions).filter(|(_, at)| at.1.is_some()) {
+    for (label, _) in labels.iter().zip(conditions).filter(|(_, at)| is_open(&at.0)) {
         fed[*label as usize] = true;
     }
     let length = |is: &dyn Fn(&FlowPiece) -> bool| -> f64 {

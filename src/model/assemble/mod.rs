@@ -3,6 +3,7 @@
 mod bolts;
 mod bonds;
 mod cuts;
+mod drains;
 mod ends;
 mod flow;
 mod geometry;

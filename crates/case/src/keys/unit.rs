@@ -29,6 +29,8 @@ pub const ACCELERATION: Unit = unit("m/s²", &[("cm/s²", 1e-2), ("mm/s²", 1e-3
 pub const SPEED: Unit = unit("m/s", &[("cm/s", 1e-2), ("mm/s", 1e-3)]);
 /// Of rain.
 pub const RAIN: Unit = unit("m/s", &[("mm/h", 1e-3 / 3600.0), ("mm/day", 1e-3 / 86400.0)]);
+/// Of flows for each metre of depth.
+pub const FLOW: Unit = unit("m²/s", &[("L/min per m", 1e-3 / 60.0), ("L/s per m", 1e-3)]);
 pub const TURN: Unit = unit("rad/s", &[]);
 pub const SECOND: Unit = unit("s", &[("ms", 1e-3), ("hours", 3600.0)]);
 pub const ENERGY: Unit = unit("J/m²", &[("kJ/m²", 1e3), ("N/mm", 1e3)]);

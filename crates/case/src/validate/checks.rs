@@ -200,6 +200,12 @@ impl<'a> Names<'a> {
         Self { what: "rain", remedy: "add [[rain]] with this `name`", known }
     }
 
+    /// Returns the drains of a case.
+    pub fn of_drains(case: &'a Case) -> Self {
+        let known = case.drains.iter().map(|drain| drain.name.as_str()).collect();
+        Self { what: "drain", remedy: "add [[drain]] with this `name`", known }
+    }
+
     /// Returns the dynamic stages of a case.
     pub fn of_dynamic_stages(case: &'a Case) -> Self {
         let dynamic = case.stages.iter().filter(|stage| stage.kind == StageKind::Dynamic);

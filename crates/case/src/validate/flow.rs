@@ -1,10 +1,10 @@
 //! Checks of water that flows in joints.
 
-use super::checks::{Names, each, segment, unique};
+use super::checks::{Names, each, points, segment, unique};
 use super::ports::word;
 use crate::key::{Check, Key, fail};
 use crate::keys::Plain;
-use crate::{Case, Flow, Head, Integrator, Rain, Stage, StageKind};
+use crate::{Case, Drain, Flow, Head, Integrator, Rain, Stage, StageKind};
 
 /// Names of places in results that are no heads.
 pub const PLACES: [&str; 2] = ["reservoir", "air"];
@@ -16,6 +16,7 @@ pub const PLACES: [&str; 2] = ["reservoir", "air"];
 pub fn validate_flow(root: &Key, case: &Case) -> Check {
     each(&root.field("head"), &case.heads, validate_head)?;
     each(&root.field("rain"), &case.rains, validate_rain)?;
+    each(&root.field("drain"), &case.drains, validate_drain)?;
     validate_names(root, case)?;
     let Some(flow) = &case.flow else { return refuse_alone(root, case) };
     let key = root.field("flow");
@@ -55,6 +56,12 @@ fn validate_rain(key: &Key, rain: &Rain) -> Check {
     Ok(())
 }
 
+fn validate_drain(key: &Key, drain: &Drain) -> Check {
+    drain.check(key)?;
+    validate_name(key, &drain.name, "drain")?;
+    points(&key.field("points"), &drain.points, 2, "a drain")
+}
+
 fn validate_name(key: &Key, name: &str, what: &str) -> Check {
     let key = key.field("name");
     word(&key, name, what)?;
@@ -64,25 +71,30 @@ fn validate_name(key: &Key, name: &str, what: &str) -> Check {
     Ok(())
 }
 
-/// Results tell heads and rain apart by name.
+/// Results tell heads, rain and drains apart by name.
 fn validate_names(root: &Key, case: &Case) -> Check {
-    let heads: Vec<&str> = case.heads.iter().map(|head| head.name.as_str()).collect();
-    let rains: Vec<&str> = case.rains.iter().map(|rain| rain.name.as_str()).collect();
-    unique(&root.field("head"), "head", heads.iter().copied().map(Some))?;
-    unique(&root.field("rain"), "rain", rains.iter().copied().map(Some))?;
-    match rains.iter().position(|name| heads.contains(name)) {
-        Some(k) => {
-            let message = format!("is {:?}, as a head of the case is called; results need a name for each", rains[k]);
-            fail(&root.field("rain").index(k).field("name"), format!("{message}, rename one of both"))
+    let lists: [(&str, Vec<&str>); 3] = [
+        ("head", case.heads.iter().map(|head| head.name.as_str()).collect()),
+        ("rain", case.rains.iter().map(|rain| rain.name.as_str()).collect()),
+        ("drain", case.drains.iter().map(|drain| drain.name.as_str()).collect()),
+    ];
+    for (k, (what, names)) in lists.iter().enumerate() {
+        unique(&root.field(what), what, names.iter().copied().map(Some))?;
+        for (other, others) in &lists[..k] {
+            if let Some(at) = names.iter().position(|name| others.contains(name)) {
+                let key = root.field(what).index(at).field("name");
+                let message = format!("is {:?}, as a {other} is called, and results need a name for each", names[at]);
+                return fail(&key, format!("{message}; rename one of both"));
+            }
         }
-        None => Ok(()),
     }
+    Ok(())
 }
 
 /// Keys that have no effect without `[flow]`.
 fn refuse_alone(root: &Key, case: &Case) -> Check {
     let remedy = "add `[flow]` or remove it";
-    let tables = [("head", case.heads.is_empty()), ("rain", case.rains.is_empty())];
+    let tables = [("head", case.heads.is_empty()), ("rain", case.rains.is_empty()), ("drain", case.drains.is_empty())];
     if let Some((table, _)) = tables.into_iter().find(|(_, is_empty)| !is_empty) {
         return fail(&root.field(table).index(0), format!("has no effect without [flow], which it is for; {remedy}"));
     }
@@ -146,7 +158,7 @@ fn refuse_other_blocks(key: &Key, case: &Case) -> Check {
     fail(key, format!("cannot follow blocks that break or that a stage cuts, as {what} does; remove one of both"))
 }
 
-/// Checks the heads and the rain that a stage brings.
+/// Checks the heads, the rain and the drains that a stage brings.
 ///
 /// # Errors
 /// The first value that cannot be used.
@@ -154,10 +166,13 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
     let (heads, rain) = (key.field("heads"), key.field("rain"));
     let of_heads = stage.heads.keys().map(|name| (&heads, name, Names::of_heads(case)));
     let of_rain = stage.rain.keys().map(|name| (&rain, name, Names::of_rain(case)));
-    for (key, name, names) in of_heads.chain(of_rain) {
+    let drain = key.field("drain");
+    let of_drains = stage.drain.iter().map(|name| (&drain, name, Names::of_drains(case)));
+    for (key, name, names) in of_heads.chain(of_rain).chain(of_drains) {
         names.must_hold(key, name)?;
-        let own = key.field(name);
-        if place == 0 {
+        let is_drain = std::ptr::eq(key, &raw const drain);
+        let own = if is_drain { key.clone() } else { key.field(name) };
+        if place == 0 && !is_drain {
             let message = "is in the first stage, which has the value of its own table; give it there, or in a later \
                            stage";
             return fail(&own, message);
@@ -166,6 +181,22 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
             let message = "is in a dynamic stage, which holds the water pressures of the stage before; give it in a \
                            static stage";
             return fail(&own, message);
+        }
+    }
+    refuse_idle_drains(&drain, place, stage, case)
+}
+
+/// Refuses drains that act already.
+fn refuse_idle_drains(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
+    for (k, name) in stage.drain.iter().enumerate() {
+        let is_active = case.drains.iter().any(|drain| drain.name == *name && drain.active);
+        let before = case.stages[..place].iter().any(|stage| stage.drain.contains(name));
+        if is_active || before || stage.drain[..k].contains(name) {
+            let message = format!(
+                "drain {name:?} acts already; give it `active = false` in [[drain]], and name it in the first stage in \
+                 which it acts"
+            );
+            return fail(key, message);
         }
     }
     Ok(())
