@@ -39,7 +39,7 @@ pub struct FlowSurvey {
     pub pieces: usize,
     /// Nodes that have a head, that of the reservoir included.
     pub heads: usize,
-    /// Nodes that are open to the air, those in rain included.
+    /// Nodes that are open to the air, those in rain and of drains included.
     pub outcrops: usize,
     /// Nodes within the rock at which a single piece ends.
     pub dead_ends: usize,

@@ -85,9 +85,8 @@ keys! {
 }
 
 keys! {
-    /// A bore hole or a gallery that drains the joints which it crosses, or a well from which a pump takes water. The
-    /// section is one metre deep, so that it stands for a row of drains as close as apertures of joints let them act
-    /// together.
+    /// A bore hole or a gallery that drains the joints which it crosses, or a well from which a pump takes water. It
+    /// acts over all the depth of the section, as a row of close bore holes does.
     pub struct Drain {
         /// Name, for stages and results.
         pub name: String,

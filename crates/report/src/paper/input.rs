@@ -37,6 +37,7 @@ pub fn input_chapter(records: &Records) -> String {
                 flow(input),
                 heads(input),
                 rains(input),
+                drains(input),
                 loads(input),
                 motions(input),
             ]
@@ -174,6 +175,24 @@ fn heads(input: &Value) -> String {
 fn rains(input: &Value) -> String {
     let rate = |rate: &Value| plain(rate, "m/s", Typed).into();
     changing(input, ("rains", "rate", "rain"), rate, ("Rain that joints take", ["Rain", "Stage", "Rate"]))
+}
+
+/// Drains, and since when they act.
+fn drains(input: &Value) -> String {
+    let since = |drain: &Value| -> Cell {
+        let by = |stage: &&Value| entries(&stage["drain"]).contains(&drain["name"]);
+        match drain["active"].as_bool() {
+            Some(false) => {
+                entries(&input["stages"]).iter().find(by).map_or(Cell::Empty, |stage| text(&stage["name"]).into())
+            }
+            _ => "start".into(),
+        }
+    };
+    let row = |drain: &Value| -> Vec<Cell> {
+        vec![text(&drain["name"]).into(), since(drain), plain(&drain["pump"], "m²/s", Typed).into()]
+    };
+    let rows: Vec<Vec<Cell>> = entries(&input["drains"]).iter().map(row).collect();
+    part("Drains", &table(&["Drain", "Acts from", "Pump"], &rows))
 }
 
 /// Named values of one list at the start, under its own key, and those that stages bring.
