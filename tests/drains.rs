@@ -11,7 +11,7 @@ const T: f64 = 1000.0 * 9.81 * 1e-12 / (12.0 * 1e-3);
 /// Height of the joint (m).
 const BASE: f64 = 3.0;
 
-/// What enters, leaves and runs off (m²/s) at both heads, at drains, from the reservoir and from the air.
+/// Water that enters, leaves and runs off (m²/s) at both heads, at drains, from the reservoir and from the air.
 fn sums(simulation: &Simulation) -> &[[f64; 3]] {
     let FlowBalance { sums, .. } =
         simulation.state().seepage.as_ref().and_then(|flow| flow.balances.last()).expect("a balance");

@@ -8,7 +8,7 @@ use enmm::model::{FlowBalance, Simulation, State};
 /// Transmissivity (m²/s) of joints of 0.1 mm: γe³/12μ.
 const T: f64 = 1000.0 * 9.81 * 1e-12 / (12.0 * 1e-3);
 
-/// What enters, leaves and runs off (m²/s) at each head, in rain, from the reservoir and from the air.
+/// Water that enters, leaves and runs off (m²/s) at each head, in rain, from the reservoir and from the air.
 fn sums(simulation: &Simulation) -> &[[f64; 3]] {
     &balance(simulation).sums
 }

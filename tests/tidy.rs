@@ -13,12 +13,12 @@ const ROOMS: [(&str, usize); 12] = [
     ("rock", 1400),
     ("mechanics", 2900),
     ("contact", 7800),
-    ("flow", 500),
+    ("flow", 700),
     ("state", 2250),
     ("step", 3550),
     ("fracture", 1100),
     ("recut", 1150),
-    ("model", 7050),
+    ("model", 7200),
     ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;

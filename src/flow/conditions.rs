@@ -125,7 +125,7 @@ impl FlowNet {
             let sum = &mut sums[place];
             sum[usize::from(*inflow < 0.0)] += inflow.abs();
             if let Condition::Rain { rate } = condition {
-                // What wells up leaves as well, but is not rain.
+                // Water that wells up leaves as well, but is no rain.
                 sum[2] += (rate - inflow.max(0.0)).max(0.0);
             }
         }

@@ -96,7 +96,7 @@ keys! {
         /// Whether it acts from the start on; if not, a stage puts it in place with `drain`.
         #[serde(default = "crate::keys::yes")]
         pub active: bool,
-        /// Flow (m²/s, that is m³/s from each metre of depth) that a pump takes, the same from each joint that the drain
+        /// Flow (m²/s, that is m³/s from each metre of depth) that a pump takes, the same from each joint that it
         /// crosses, and less where a joint runs dry; default: none, so that the water flows out freely.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub pump: Option<f64> => PUMP.label("Pump"),

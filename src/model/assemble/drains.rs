@@ -4,8 +4,6 @@ use crate::flow::{self, FlowNet};
 use crate::geometry::Point;
 use crate::model::case::{self, Case, Invalid};
 
-use super::flow::invalid;
-
 /// Lines of the drains of a case.
 pub(super) fn lines(case: &Case) -> Vec<Vec<Point>> {
     case.drains.iter().map(|drain| drain.points.iter().map(|&point| Point::from(point)).collect()).collect()
@@ -27,7 +25,7 @@ pub(super) fn drains(
         let nodes: Vec<u32> = (0..net.places.len() as u32).filter(on).collect();
         if nodes.is_empty() {
             let message = "crosses no joint, so that it drains nothing: lead it through joints that conduct water";
-            return Err(invalid(&key, message.to_owned()));
+            return Err(Invalid { key, message: message.to_owned() });
         }
         for &node in &nodes {
             if let Some(other) = owner[node as usize].replace(k) {
@@ -36,7 +34,7 @@ pub(super) fn drains(
                     "crosses the joint at ({:.6}, {:.6}) m where drain {:?} does too; move one of both",
                     at.x, at.y, case.drains[other].name
                 );
-                return Err(invalid(&key, message));
+                return Err(Invalid { key, message });
             }
         }
         let mut acts = *active;

@@ -40,7 +40,7 @@ pub(super) fn net(
     Ok(Some(net))
 }
 
-pub(super) fn invalid(key: &str, message: String) -> Invalid {
+fn invalid(key: &str, message: String) -> Invalid {
     Invalid { key: key.to_owned(), message }
 }
 

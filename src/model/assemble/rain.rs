@@ -4,8 +4,6 @@ use crate::flow::{FallingRain, FlowNet, Outcrop};
 use crate::geometry::{Point, segment};
 use crate::model::case::{Case, Invalid, Rain, Stage};
 
-use super::flow::invalid;
-
 /// Rain with its outcrops, the ground that drains to each and its rates in each stage.
 pub(super) fn rains(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<FallingRain>, Invalid> {
     let mut owner: Vec<Option<usize>> = vec![None; net.places.len()];
@@ -19,7 +17,7 @@ pub(super) fn rains(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<Fa
                 "no joint crops out on the segment ({x0}, {y0})–({x1}, {y1}), so that all rain runs off: give two \
                  points of one straight side of the outline that joints meet and that no support holds"
             );
-            return Err(invalid(&key, message));
+            return Err(Invalid { key, message });
         }
         for (node, _) in &outcrops {
             if let Some(other) = owner[*node as usize].replace(k) {
@@ -28,7 +26,7 @@ pub(super) fn rains(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<Fa
                     "meets the outcrop at ({:.6}, {:.6}) m on which rain {:?} falls too: shorten one of both segments",
                     at.x, at.y, case.rains[other].name
                 );
-                return Err(invalid(&key, message));
+                return Err(Invalid { key, message });
             }
         }
         let mut now = *rate;
