@@ -355,7 +355,4 @@ fn strengths_that_make_no_sense_are_refused() {
         let error = refusal(&text);
         assert!(error.contains(expected), "{error}");
     }
-    let case = crate::common::case(&text);
-    let error = enmm::cosimulation::Cosimulation::new(case).expect_err("it is refused").to_string();
-    assert!(error.contains("rock.rock.fracture: is for `enmm run`"), "{error}");
 }

@@ -149,6 +149,12 @@ impl Simulation {
         field
     }
 
+    /// Most blocks that the model can have: those of its last stage, and as many parts more as rock may break into.
+    pub fn blocks_max(&self) -> usize {
+        let parts = self.model().breaking.as_ref().map_or(0, |breaking| breaking.parts_max.min(breaking.cuts_max));
+        self.grounds.last().map_or(0, |ground| ground.built.model.covers.block_count()) + parts
+    }
+
     /// Sections of rock that have broken so far.
     pub fn cuts(&self) -> &[Cut] {
         &self.state.cuts

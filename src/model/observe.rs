@@ -199,7 +199,7 @@ impl Simulation {
 
     /// The block with a number that hosts see, if there is one now.
     pub fn block_labelled(&self, label: u32) -> Option<BlockId> {
-        self.model().labels.iter().position(|&own| own == label).map(BlockId::new)
+        self.model().block_labelled(label)
     }
 
     /// The contacts of the last step at their places now, worked out at the first look after a step. Before the first

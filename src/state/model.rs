@@ -295,6 +295,13 @@ pub struct Model {
 }
 
 impl Model {
+    /// The block with a number that hosts see, if there is one.
+    pub fn block_labelled(&self, label: u32) -> Option<BlockId> {
+        let is_own = self.labels.get(label as usize) == Some(&label);
+        let place = if is_own { Some(label as usize) } else { self.labels.iter().position(|own| *own == label) };
+        place.map(BlockId::new)
+    }
+
     /// Data that the contacts of a step share: the boundary at its positions, joint laws, and what the selection of the
     /// contacts has found of their friction.
     pub fn contact_setting<'a>(

@@ -244,6 +244,12 @@ impl Case {
         })
     }
 
+    /// Whether blocks can become more: rock breaks, or a stage cuts it.
+    pub fn has_cuts(&self) -> bool {
+        self.rocks.values().any(|rock| rock.fracture.is_some())
+            || self.stages.iter().any(|stage| !stage.cuts.is_empty())
+    }
+
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.
     pub fn is_whole(&self) -> bool {
         self.joints.is_empty()

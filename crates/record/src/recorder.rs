@@ -173,6 +173,10 @@ impl Recorder {
     pub(crate) fn take_up(&mut self, simulation: &Simulation) {
         self.plan = Plan::of(simulation);
         self.row = None;
+        let breaks = simulation.cuts().len();
+        if std::mem::replace(&mut self.breaks, breaks) != breaks {
+            self.joints = Joints::of(simulation);
+        }
     }
 
     /// Notes in the film that the stage begins, or how it ended.

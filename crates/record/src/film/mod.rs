@@ -228,6 +228,7 @@ impl Film {
 
     /// Forgets what has been kept back.
     pub fn discard(&mut self) {
+        self.forget_breaks();
         self.writer.discard();
     }
 
@@ -236,10 +237,15 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn cut(&mut self, until: f64) -> io::Result<()> {
+        self.forget_breaks();
+        self.writer.cut(until).map_err(refused)
+    }
+
+    /// Outlines after a break may be gone, and are written anew.
+    fn forget_breaks(&mut self) {
         if self.breaks != Some(0) {
             self.breaks = None;
         }
-        self.writer.cut(until).map_err(refused)
     }
 
     /// Ends the film and writes its page.
