@@ -52,7 +52,8 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// Sets the factor by which cohesion, tan φ and tensile strength of all joints are multiplied (1 at the start).
+    /// Sets the factor by which cohesion, tan φ and tensile strength of all joints, and of rock that yields or breaks,
+    /// are multiplied (1 at the start).
     ///
     /// # Errors
     /// A value that is not finite, negative or too large.

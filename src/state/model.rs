@@ -227,8 +227,8 @@ pub struct Model {
     pub mass_matrix: MassMatrix,
     /// 2π·cs/max(√A, h) of each block (1/s): what the damping ratio multiplies.
     pub block_frequency: Vec<f64>,
-    /// Number of each block as hosts see it: its index, unless a stage has cut the rock. The part of a block that
-    /// holds its reference point keeps the number.
+    /// Number of each block as hosts see it: its index, unless the rock has been cut. The part of a block that holds
+    /// the point of its port, or else its reference point, keeps the number.
     pub labels: Vec<u32>,
     /// Boundary as contact sees it.
     pub boundary: Boundary,

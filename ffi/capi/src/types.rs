@@ -318,7 +318,7 @@ pub struct enmm_event {
 pub struct enmm_cut {
     /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
     pub struct_size: usize,
-    /// Block that broke; its part with its reference point keeps the id.
+    /// Block that broke; its part with the point of a port, or else with its reference point, keeps the id.
     pub block: u32,
     /// Id of the part that is new.
     pub part: u32,

@@ -453,7 +453,7 @@ impl Rows {
             let what = "Height y of the free water surface";
             self.input("water_level", what, "m", water.start_level(), Quantity::WaterLevel);
         }
-        let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
+        let what = "Factor on cohesion, tan(friction angle) and tensile strength of joints and rock";
         self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);
         for (k, port) in case.ports.iter().enumerate() {
             self.port_inputs(k, port);

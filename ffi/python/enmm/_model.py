@@ -479,9 +479,9 @@ class Model(Closing):
         return PortInputs(tuple(traction), pressure.value, tuple(velocity))
 
     def set_strength_factor(self, f: float) -> None:
-        """Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied.
+        """Sets the factor by which cohesion, tan(friction angle) and tensile strength are multiplied.
 
-        1 is the strength of the case.
+        It acts on all joints, and on rock that yields or breaks; 1 is the strength of the case.
         """
         self._core.call("enmm_set_strength_factor", number("f", f))
 
