@@ -21,7 +21,7 @@ mod writer;
 
 pub use block::{MOTION, QUANTUM};
 pub use data::{
-    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Break, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
     MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable,
 };
 pub use error::FilmError;
