@@ -86,7 +86,7 @@ impl SectionRecord {
     }
 
     /// How it fails in words.
-    fn how(&self) -> &'static str {
+    pub fn how(&self) -> &'static str {
         match self.failure {
             "bends" => "by bending",
             "slides" => "by shear",

@@ -500,8 +500,13 @@ fn film(
     warnings: &[String],
 ) -> io::Result<Film> {
     let columns = rows::columns(simulation.case());
-    let opening =
-        Opening { command, film: directory.join(FILM), axis: Axis::time(), numbers: numbers(simulation), columns: &columns };
+    let opening = Opening {
+        command,
+        film: directory.join(FILM),
+        axis: Axis::time(),
+        numbers: numbers(simulation),
+        columns: &columns,
+    };
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;
     for text in warnings {
         film.note(simulation.time(), &Note::Warning { text: text.clone() })?;

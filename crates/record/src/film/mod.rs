@@ -11,6 +11,7 @@ use enmm_report::{
     Note, Outline, PAGE, Structures, write_page,
 };
 
+use crate::breaks::BreakRecord;
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, EdgeId};
@@ -18,7 +19,6 @@ use enmm_io::LoadedCase;
 use enmm_observe::{
     BLOCK_QUANTITIES, BlockState, BondState, ContactState, Quantity, STRENGTH_QUANTITIES, bond_states, node_loops,
 };
-use crate::breaks::BreakRecord;
 use structures::{Beside, bolt_places};
 
 /// Numbers of blocks that the film of a model that moves leaves out: they never change, or follow from others of it.

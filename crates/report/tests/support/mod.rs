@@ -181,7 +181,8 @@ impl Moment {
 }
 
 pub fn head() -> Head {
-    let number = |name: &str| BlockNumber { name: name.to_owned(), unit: "m".to_owned(), meaning: name.to_owned() };
+    let number =
+        |name: &str| BlockNumber { name: name.to_owned(), unit: "m".to_owned(), meaning: name.to_owned(), range: None };
     let column = |name: &str, quantity: &str, unit: &str| Column {
         name: name.to_owned(),
         quantity: quantity.to_owned(),

@@ -1,0 +1,43 @@
+// Blocks that have broken. A page has this script when its film tells of some.
+
+const BREAKS_STYLE = `
+  #breaks td { padding: 0.3rem 0 0 0.3rem; border: 0 }
+  #breaks td.text { padding-left: 0; white-space: normal }
+  #breaks .forces td { padding: 0 0 0.3rem; border-bottom: 1px solid var(--line); color: var(--soft) }
+  #breaks .forces td { text-align: left; white-space: normal; font-size: 0.85rem }`;
+
+// Two rows of a break: what broke when and how, and what its section carried.
+function rowsOfBreak({ at, block, part, failure, ends, share, normal, shear, moment }) {
+  const go = element("button", { type: "button", title: "Go to this moment" }, `${digits(at)} s`);
+  go.addEventListener("click", () => window.enmm.player.seek(at));
+  const place = ([x, y]) => `(${x.toFixed(3)}, ${y.toFixed(3)})`.replaceAll("-", "−");
+  const carried = [
+    `N ${withUnit(normal, "N/m")}`,
+    `V ${withUnit(shear, "N/m")}`,
+    `M ${withUnit(moment, "N")}`,
+  ];
+  return [
+    element(
+      "tr",
+      {},
+      element("td", { class: "text" }, go),
+      element("td", { class: "text" }, `${block}; ${part} parts off`),
+      element("td", { class: "text" }, failure),
+      element("td", {}, share.toFixed(3)),
+    ),
+    element(
+      "tr",
+      { class: "forces" },
+      element("td", { colspan: 4 }, `${place(ends[0])} to ${place(ends[1])} m: ${carried.join(", ")}`),
+    ),
+  ];
+}
+
+function breaksSection(breaks) {
+  return section(
+    `Breaks (${breaks.length})`,
+    element("style", {}, BREAKS_STYLE),
+    element("p", { class: "soft" }, "What the section carried: N normal, tension positive, V shear, M bending."),
+    headed("breaks", 3, ["Time", "Block", "Broke", "Share of strength"], breaks.flatMap(rowsOfBreak)),
+  );
+}
