@@ -44,7 +44,7 @@ pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
 pub use joints::{JOINT_QUANTITIES, JointPiece, Joints, SlipSince};
 pub use loops::{loops, node_loops};
-pub use sections::{RockSection, rock_sections};
+pub use sections::{RockSection, broken_sections, rock_sections};
 pub use snapshot::{Boundary, Polygons, Snapshot, moved_since, references};
 pub use stress::STRESS_QUANTITIES;
 pub use supports::{SupportKind, SupportPoint, supports};

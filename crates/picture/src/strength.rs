@@ -3,9 +3,10 @@
 use super::Picture;
 use super::axes::{LABEL_SIZE, Ticks, is_drawable, three_digits};
 use super::bar::{BAR_ROOM, draw_bar};
-use super::colour::{INK, WHITE, scale_step};
+use super::colour::{INK, SLIP, WHITE, scale_step};
 use super::sheet::{Path, Style, TextStyle};
 use super::stage::{StageEnd, StageSheet};
+use enmm::geometry::Point;
 use enmm_observe::RockSection;
 
 /// Share of strength from which on the worst section of a block is drawn.
@@ -13,8 +14,9 @@ const DRAWN: f64 = 0.5;
 /// Shares that are written beside their sections at most.
 const LABELS: usize = 12;
 
-/// Draws the share of strength of each block as a colour, and the worst sections of blocks near breaking.
-pub fn strength_picture(stage: &StageEnd, sections: &[RockSection]) -> Picture {
+/// Draws the share of strength of each block as a colour, the worst sections of blocks near breaking, and the faces of
+/// those that have broken, two each.
+pub fn strength_picture(stage: &StageEnd, sections: &[RockSection], broken: &[[Point; 2]]) -> Picture {
     let mut sheet = StageSheet::new(stage, BAR_ROOM, "share of strength of the worst section of each block");
     let share = |k: usize| stage.snapshot.strength_share.get(k).copied().unwrap_or_default();
     sheet.fill(|k| scale_step(share(k)));
@@ -27,7 +29,11 @@ pub fn strength_picture(stage: &StageEnd, sections: &[RockSection]) -> Picture {
     near.retain(|section| section.share >= DRAWN);
     let mut lines = Path::default();
     near.iter().for_each(|section| lines.line(section.ends.map(|end| view.pixel(&end))));
+    let mut faces = Path::default();
+    let drawn = broken.iter().filter(|ends| ends.iter().all(is_drawable));
+    drawn.for_each(|ends| faces.line(ends.map(|end| view.pixel(&end))));
     sheet.sheet.clipped(&view.area, |sheet| {
+        sheet.path(faces, Style::line(SLIP, 4.0));
         sheet.path(lines.clone(), Style::line(WHITE, 5.0));
         sheet.path(lines, Style::line(INK, 2.4));
         for section in near.iter().take(LABELS) {
@@ -43,5 +49,6 @@ pub fn strength_picture(stage: &StageEnd, sections: &[RockSection]) -> Picture {
         || "all blocks below 0.3".to_owned(),
         |(block, share)| format!("block {block} has the greatest, {}", three_digits(share)),
     );
-    sheet.close(&format!("{most}; at 1 a block breaks; lines: worst sections from 0.5 on"))
+    let faces = if broken.is_empty() { "" } else { "; red: faces of sections that have broken" };
+    sheet.close(&format!("{most}; at 1 a block breaks; black: worst sections from 0.5 on{faces}"))
 }

@@ -8,7 +8,9 @@ use enmm::geometry::{Point, Vector};
 use enmm::model::case::{PictureKind, StageKind};
 use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, copy_file};
-use enmm_observe::{Joints, Polygons, Snapshot, moved_since, references, rock_sections, water_surface};
+use enmm_observe::{
+    Joints, Polygons, Snapshot, broken_sections, moved_since, references, rock_sections, water_surface,
+};
 use enmm_picture::{
     StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, history_picture,
     joint_stress_pictures, joints_picture, mean_stress_contours, model_annotations, model_picture, number_text,
@@ -194,7 +196,9 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
             }
             PictureKind::MeanStressContours => vec![mean_stress_contours(&stage, &references(simulation))],
             PictureKind::Strength if simulation.model().breaking.is_none() => Vec::new(),
-            PictureKind::Strength => vec![strength_picture(&stage, &rock_sections(simulation))],
+            PictureKind::Strength => {
+                vec![strength_picture(&stage, &rock_sections(simulation), &broken_sections(simulation))]
+            }
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
             PictureKind::Stress => vec![stress_picture(&stage)],
