@@ -46,9 +46,9 @@ pub fn strength_picture(stage: &StageEnd, sections: &[RockSection], broken: &[[P
     let ticks: Vec<_> = ticks.values.iter().map(|&value| (value, ticks.label(value))).collect();
     draw_bar(&mut sheet.sheet, &view.area, "share of strength", &ticks);
     let most = worst.map_or_else(
-        || "all blocks below 0.3".to_owned(),
+        || "no section near its strength".to_owned(),
         |(block, share)| format!("block {block} has the greatest, {}", three_digits(share)),
     );
-    let faces = if broken.is_empty() { "" } else { "; red: faces of sections that have broken" };
+    let faces = if broken.is_empty() { "" } else { "; orange: faces of sections that have broken" };
     sheet.close(&format!("{most}; at 1 a block breaks; black: worst sections from 0.5 on{faces}"))
 }

@@ -1,15 +1,22 @@
 // Blocks that have broken. A page has this script when its film tells of some.
 
 const BREAKS_STYLE = `
-  #breaks td { padding: 0.3rem 0 0 0.3rem; border: 0 }
-  #breaks td.text { padding-left: 0; white-space: normal }
+  #breaks td { padding: 0.3rem 0 0 0 }
+  #breaks td.text { padding-right: 0.5rem }
+  #breaks button { white-space: nowrap; padding: 0.05rem 0.4rem; min-height: 0 }
   #breaks .forces td { padding: 0 0 0.3rem; border-bottom: 1px solid var(--line); color: var(--soft) }
-  #breaks .forces td { text-align: left; white-space: normal; font-size: 0.85rem }`;
+  #breaks .forces td { text-align: left; font-size: 0.85rem }`;
+
+// Shows the first frame in which a break of a time has happened.
+function goToBreak(at) {
+  const { film, player } = window.enmm;
+  player.seek(film.frames.find(({ time }) => time >= at)?.time ?? at);
+}
 
 // Two rows of a break: what broke when and how, and what its section carried.
 function rowsOfBreak({ at, block, part, failure, ends, share, normal, shear, moment }) {
   const go = element("button", { type: "button", title: "Go to this moment" }, `${digits(at)} s`);
-  go.addEventListener("click", () => window.enmm.player.seek(at));
+  go.addEventListener("click", () => goToBreak(at));
   const place = ([x, y]) => `(${x.toFixed(3)}, ${y.toFixed(3)})`.replaceAll("-", "−");
   const carried = [
     `N ${withUnit(normal, "N/m")}`,
