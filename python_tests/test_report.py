@@ -327,7 +327,7 @@ def test_a_page_names_the_block_nearest_to_breaking(enmm, page, cases, tmp_path)
 # Pages, tables and frames of rock that does not break are as they were.
 def test_results_of_rock_that_does_not_break_know_no_strength(report, results):
     assert "strength_share" not in (results / "blocks.csv").read_text()
-    assert "breaksSection" not in (results / "report.html").read_text()
+    assert "function breaksSection" not in (results / "report.html").read_text()
     assert report.run("document.querySelector('[data-colour=strength_share]')") is None
     assert report.run("document.getElementById('breaks')") is None
 
