@@ -2,7 +2,7 @@
 
 const BREAKS_STYLE = `
   #breaks td { padding: 0.3rem 0 0 0 }
-  #breaks td.text { padding-right: 0.5rem }
+  #breaks td.text { padding-right: 0.5rem; white-space: nowrap }
   #breaks button { white-space: nowrap; padding: 0.05rem 0.4rem; min-height: 0 }
   #breaks .forces td { padding: 0 0 0.3rem; border-bottom: 1px solid var(--line); color: var(--soft) }
   #breaks .forces td { text-align: left; font-size: 0.85rem }`;
@@ -17,25 +17,22 @@ function goToBreak(at) {
 function rowsOfBreak({ at, block, part, failure, ends, share, normal, shear, moment }) {
   const go = element("button", { type: "button", title: "Go to this moment" }, `${digits(at)} s`);
   go.addEventListener("click", () => goToBreak(at));
-  const place = ([x, y]) => `(${x.toFixed(3)}, ${y.toFixed(3)})`.replaceAll("-", "−");
-  const carried = [
-    `N ${withUnit(normal, "N/m")}`,
-    `V ${withUnit(shear, "N/m")}`,
-    `M ${withUnit(moment, "N")}`,
-  ];
+  const place = ([x, y]) => `(${x.toFixed(2)}, ${y.toFixed(2)})`.replaceAll("-", "−");
+  const where = `${place(ends[0])} to ${place(ends[1])} m`,
+    carried = `N ${withUnit(normal, "N/m")}, V ${withUnit(shear, "N/m")}, M ${withUnit(moment, "N")}`;
   return [
     element(
       "tr",
       {},
       element("td", { class: "text" }, go),
-      element("td", { class: "text" }, `${block}; ${part} parts off`),
+      element("td", { class: "text" }, String(block)),
       element("td", { class: "text" }, failure),
       element("td", {}, share.toFixed(3)),
     ),
     element(
       "tr",
       { class: "forces" },
-      element("td", { colspan: 4 }, `${place(ends[0])} to ${place(ends[1])} m: ${carried.join(", ")}`),
+      element("td", { colspan: 4 }, `${where}: ${carried}. Block ${part} parts off.`),
     ),
   ];
 }
