@@ -1,6 +1,7 @@
 // Blocks that have broken. A page has this script when its film tells of some.
 
 const BREAKS_STYLE = `
+  #breaks th { overflow-wrap: normal }
   #breaks td { padding: 0.3rem 0 0 0 }
   #breaks td.text { padding-right: 0.5rem; white-space: nowrap }
   #breaks button { white-space: nowrap; padding: 0.05rem 0.4rem; min-height: 0 }
@@ -41,7 +42,7 @@ function breaksSection(breaks) {
   return section(
     `Breaks (${breaks.length})`,
     element("style", {}, BREAKS_STYLE),
-    element("p", { class: "soft" }, "What the section carried: N normal, tension positive, V shear, M bending."),
-    headed("breaks", 3, ["Time", "Block", "Broke", "Share of strength"], breaks.flatMap(rowsOfBreak)),
+    element("p", { class: "soft" }, "Share of its strength that a section had, and what it carried: N normal, tension positive, V shear, M bending."),
+    headed("breaks", 3, ["Time", "Block", "Broke", "Share"], breaks.flatMap(rowsOfBreak)),
   );
 }
