@@ -33,8 +33,8 @@ const POLYGON: u8 = 7;
 /// XX, YY, ZZ, XY, YZ, XZ, of which YZ and XZ are zero), its parts `stress_xx`, `stress_yy`,
 /// `stress_xy`, the principal stresses in the plane `principal_max` and `principal_min` (so that the greatest
 /// compression is `principal_min`), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (all Pa),
-/// `block`, `rock`, `plastic_strain` = √(⅔ εp:εp) where rock can yield, and `strength_share` of the worst section of the
-/// block where rock can break. Field data: `TimeValue` (s), `rock_names`.
+/// `block`, `rock`, `plastic_strain` = √(⅔ εp:εp) where rock can yield, and `strength_share` of the worst section of
+/// the block where rock can break. Field data: `TimeValue` (s), `rock_names`.
 ///
 /// # Errors
 /// `InvalidInput` if a field does not have one entry per point or element; else what the file system refuses.
