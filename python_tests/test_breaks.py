@@ -60,7 +60,7 @@ def test_a_bar_breaks_to_the_same_bits(package, tmp_path):
         blocks = model.blocks(copy=True)
         assert model.block_count == 2 and blocks["id"].tolist() == [0, 1]
         (cut,) = model.cuts
-        assert (cut.block, cut.part, cut.failure.name) == (0, 1, "OPENED")
+        assert (cut.block, cut.part, cut.failure.name) == (0, 1, "BENT")
         assert 0 < cut.time <= half * H and 1 <= cut.share < 1.2 and abs(cut.first[0]) < 0.3
         event = next(event for event in model.events() if event.kind.name == "CUT")
         assert (event.subject, event.other, event.name, event.time) == (0, 1, "block 0", cut.time)

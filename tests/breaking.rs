@@ -2,6 +2,7 @@
 //! any mesh (theory §13, Blocks that break).
 
 use enmm::model::bytes::{Keeper, decode, encode};
+use enmm::model::tables::SectionFailure;
 use enmm::model::{EventKind, Simulation, State, StepReport};
 
 use crate::common::{refusal, root, run_stage, simulation, step};
@@ -53,6 +54,11 @@ fn an_overhang_has_the_stress_of_a_beam_at_its_root() {
         println!("h {size}, {angle}°: {:.8} of the strength at {ends:?}", share);
         assert!((share - 0.5).abs() < 1e-5, "{share}");
         assert!(ends.iter().all(|end| end[0].abs() < 1e-9), "{ends:?}");
+        // What files show of the block, and how it would fail.
+        let shown: Vec<f64> = bar.blocks().iter().map(|block| block.strength_share).collect();
+        assert_eq!(shown, [share]);
+        assert!(bar.block_quantities().any(|quantity| quantity.name == "strength_share"));
+        assert_eq!(bar.state().worst_sections[0].failure, SectionFailure::Bends);
     }
 }
 

@@ -74,7 +74,7 @@ fn a_break_has_the_same_bits_in_any_communication_steps() {
     go(&mut whole, END, END);
     let cuts: Vec<_> = whole.cuts().collect();
     assert_eq!(cuts.len(), 1, "{cuts:?}");
-    assert!(0.0 < cuts[0].time && cuts[0].time < END && cuts[0].failure == SectionFailure::Opens);
+    assert!(0.0 < cuts[0].time && cuts[0].time < END && cuts[0].failure == SectionFailure::Bends);
     for h in [8.0 * MILLI, 0.5 * MILLI, 0.125 * MILLI] {
         let mut parts = bar();
         go(&mut parts, END, h);

@@ -13,6 +13,7 @@ use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note};
 
 use crate::blocks::write_blocks;
+use crate::breaks::SectionRecord;
 use crate::film::{Film, Opening, numbers};
 use crate::history::HistoryWriter;
 use crate::input::input_record;
@@ -407,7 +408,7 @@ impl Recorder {
     pub fn close(&mut self, simulation: &Simulation, closing: Closing) -> io::Result<Summary> {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
-        write_blocks(&self.directory.join("blocks.csv"), &simulation.block_states())?;
+        write_blocks(&self.directory.join("blocks.csv"), simulation)?;
         if status != RunStatus::Interrupted {
             results::draw_end(simulation, &self.directory)?;
         }
@@ -422,6 +423,10 @@ impl Recorder {
         let time = simulation.time();
         let note = Note::Verdict { text: verdict.text.clone(), failed: verdict.failed };
         self.film.note(time, &note)?;
+        self.film.note_breaks(simulation, time)?;
+        if let Some(worst) = SectionRecord::worst(simulation).first() {
+            self.film.note(time, &worst.note())?;
+        }
         self.close_film(time, status, failure, doubt.as_ref())?;
         let record = RunRecord {
             case_file: loaded.source.file(),
@@ -499,8 +504,13 @@ fn film(
     warnings: &[String],
 ) -> io::Result<Film> {
     let columns = rows::columns(simulation.case());
-    let opening =
-        Opening { command, film: directory.join(FILM), axis: Axis::time(), numbers: numbers(), columns: &columns };
+    let opening = Opening {
+        command,
+        film: directory.join(FILM),
+        axis: Axis::time(),
+        numbers: numbers(simulation),
+        columns: &columns,
+    };
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;
     for text in warnings {
         film.note(simulation.time(), &Note::Warning { text: text.clone() })?;

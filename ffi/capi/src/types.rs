@@ -164,10 +164,14 @@ pub enum enmm_event_kind {
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum enmm_section_failure {
-    /// Its outermost fibre had the tensile strength, or its middle where a core split.
+    /// Its outermost fibre had the tensile strength, by tension more than by bending.
     ENMM_SECTION_OPENED = 0,
     /// It had its strength in shear.
     ENMM_SECTION_SLID = 1,
+    /// Its outermost fibre had the tensile strength, by bending more than by tension.
+    ENMM_SECTION_BENT = 2,
+    /// A core of its block had the tensile strength.
+    ENMM_SECTION_SPLIT = 3,
 }
 
 /// Weight of a message.

@@ -96,6 +96,8 @@ impl Model {
             failure: match cut.failure {
                 SectionFailure::Opens => enmm_section_failure::ENMM_SECTION_OPENED,
                 SectionFailure::Slides => enmm_section_failure::ENMM_SECTION_SLID,
+                SectionFailure::Bends => enmm_section_failure::ENMM_SECTION_BENT,
+                SectionFailure::Splits => enmm_section_failure::ENMM_SECTION_SPLIT,
             },
             reserved: 0,
             time: cut.time,

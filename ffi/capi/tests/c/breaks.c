@@ -35,7 +35,7 @@ static void check_parts(enmm_model *model)
     cuts[0].struct_size = sizeof cuts[0];
     OK(enmm_get_cuts(model, cuts, 4, &count));
     CHECK(count == 1 && blocks(model) == 2);
-    CHECK(cuts[0].block == 0 && cuts[0].part == 1 && cuts[0].failure == ENMM_SECTION_OPENED);
+    CHECK(cuts[0].block == 0 && cuts[0].part == 1 && cuts[0].failure == ENMM_SECTION_BENT);
     CHECK(cuts[0].time > 0 && cuts[0].time < STEPS * H && cuts[0].share >= 1 && cuts[0].share < 1.2);
     CHECK(cuts[0].first_x > -0.3 && cuts[0].first_x < 0.3 && cuts[0].moment != 0);
     OK(enmm_blocks_max(model, &most));
