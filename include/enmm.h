@@ -266,13 +266,21 @@ enum enmm_section_failure
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
   /**
-   * Its outermost fibre had the tensile strength, or its middle where a core split.
+   * Its outermost fibre had the tensile strength, by tension more than by bending.
    */
   ENMM_SECTION_OPENED = 0,
   /**
    * It had its strength in shear.
    */
   ENMM_SECTION_SLID = 1,
+  /**
+   * Its outermost fibre had the tensile strength, by bending more than by tension.
+   */
+  ENMM_SECTION_BENT = 2,
+  /**
+   * A core of its block had the tensile strength.
+   */
+  ENMM_SECTION_SPLIT = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -936,7 +944,7 @@ typedef struct enmm_cut {
    */
   size_t struct_size;
   /**
-   * Block that broke; its part with its reference point keeps the id.
+   * Block that broke; its part with the point of a port, or else with its reference point, keeps the id.
    */
   uint32_t block;
   /**
@@ -1403,8 +1411,8 @@ enmm_status enmm_set_boundary_pressure(struct enmm_model *model, uint32_t port, 
 enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, double p);
 
 /**
- * Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied; 1 is the
- * strength of the case.
+ * Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints and of rock that yields or
+ * breaks are multiplied; 1 is the strength of the case.
  *
  * Acts at the same times as enmm_set_gravity.
  *

@@ -59,9 +59,13 @@ class SectionFailure(IntEnum):
     """How a section of rock broke."""
 
     OPENED = 0
-    """Its outermost fibre had the tensile strength, or its middle where a core split."""
+    """Its outermost fibre had the tensile strength, by tension more than by bending."""
     SLID = 1
     """It had its strength in shear."""
+    BENT = 2
+    """Its outermost fibre had the tensile strength, by bending more than by tension."""
+    SPLIT = 3
+    """A core of its block had the tensile strength."""
 
 
 class PortKind(IntEnum):
