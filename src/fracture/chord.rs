@@ -30,7 +30,17 @@ pub struct Chord {
     /// Covers of which a share of the mass does.
     partial: Vec<(u32, f64)>,
     /// Rock to its left and to its right (m), of a block that is not convex.
-    sides: Option<[Vec<Point>; 2]>,
+    sides: Option<Sides>,
+}
+
+/// The rock on both sides of a section.
+#[derive(Debug, Clone)]
+struct Sides {
+    /// Rock to the left and to the right (m).
+    rock: [Vec<Point>; 2],
+    /// Which of both has the smaller box, and that box (m).
+    smaller: usize,
+    bounds: (Point, Point),
 }
 
 impl Chord {
@@ -63,7 +73,7 @@ impl Chord {
         if !sides.iter().all(is_part) {
             return None;
         }
-        let sides = (!outline.is_convex).then_some(sides);
+        let sides = (!outline.is_convex).then(|| Sides::new(sides));
         let is_square = is_square(outline, ends, places);
         let mut chord = Self { ends, places, is_square, whole: Vec::new(), partial: Vec::new(), sides };
         chord.weigh(model, outline);
@@ -105,7 +115,7 @@ impl Chord {
         }
         let is_left = match &self.sides {
             None => aside > 0.0,
-            Some(sides) => is_left(sides, middle),
+            Some(sides) => sides.is_left(middle),
         };
         (if is_left { 1.0 } else { 0.0 }, [middle; 2])
     }
@@ -156,7 +166,7 @@ impl Chord {
         if low < 0.0 && high > 0.0 && self.runs_through(element) {
             return None;
         }
-        Some(is_left(sides, centroid))
+        Some(sides.is_left(centroid))
     }
 
     /// Whether it, and not only its line, runs through a polygon that the line cuts.
@@ -179,7 +189,7 @@ impl Chord {
             let crosses = piece.iter().any(|p| aside(p) < 0.0) && piece.iter().any(|p| aside(p) > 0.0);
             match &self.sides {
                 Some(sides) if !(crosses && self.runs_through(piece)) => {
-                    if is_left(sides, polygon::centroid(piece)) {
+                    if sides.is_left(polygon::centroid(piece)) {
                         add(polygon::area(piece), polygon::centroid(piece));
                     }
                 }
@@ -213,6 +223,27 @@ impl Chord {
                 self.whole.push([k32, k32 + 1]);
             }
         }
+    }
+}
+
+impl Sides {
+    fn new(rock: [Vec<Point>; 2]) -> Self {
+        let bounds = rock.each_ref().map(|side| polygon::bounds(side));
+        let [left, right] = bounds.map(|(low, high)| (high - low).product());
+        let smaller = usize::from(right < left);
+        let (low, high) = bounds[smaller];
+        let room = Vector::repeat(ON * (high - low).norm());
+        Self { rock, smaller, bounds: (low - room, high + room) }
+    }
+
+    /// Whether a point of the block lies in the rock on the left rather than in that on the right.
+    fn is_left(&self, p: Point) -> bool {
+        let (low, high) = self.bounds;
+        if p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y {
+            return self.smaller == 1;
+        }
+        let [left, right] = self.rock.each_ref().map(|side| distance(side, p));
+        left <= right
     }
 }
 
@@ -317,11 +348,6 @@ fn clip(element: &[Point], places: [Point; 2], part: &mut Vec<Point>) {
 fn is_convex(polygon: &[Point]) -> bool {
     let n = polygon.len();
     (0..n).all(|k| orientation(polygon[k], polygon[(k + 1) % n], polygon[(k + 2) % n]) >= 0.0)
-}
-
-/// Whether a point lies in the rock on the left of a section rather than in that on its right.
-fn is_left([left, right]: &[Vec<Point>; 2], p: Point) -> bool {
-    distance(left, p) <= distance(right, p)
 }
 
 /// Distance (m) of a point from a polygon, 0 inside.
