@@ -65,12 +65,6 @@ pub fn carry_contacts(
     let load = |contact: &VertexEdge| Some((*contact, carry.load(contact, &seeds)?));
     let mut loaded: Vec<(VertexEdge, Loaded)> = ahead.contacts.iter().filter_map(load).collect();
     carry.hand_over(&mut loaded);
-    for (contact, loaded) in &mut loaded {
-        let has_own_rest = loaded.shares.is_some() || carry.has_changed(contact) && loaded.history.normal_force != 0.0;
-        if has_own_rest {
-            settle(contact, new, &mut loaded.history);
-        }
-    }
     if let Some(broken) = broken {
         carry.balance(broken, &mut loaded);
     }
@@ -91,8 +85,8 @@ const AT_REST: Regime = Regime::Static { ramp: 0.0 };
 /// All contacts before the cut.
 struct Before {
     faces: BTreeMap<Face, Vec<Bearing>>,
-    /// Gap (m) and stiffnesses (N/m per metre) of each.
-    springs: BTreeMap<(NodeId, SideId), (f64, [f64; 2])>,
+    /// Gap (m), stiffnesses (N/m per metre) and length (m) of each.
+    springs: BTreeMap<(NodeId, SideId), (f64, [f64; 2], f64)>,
 }
 
 impl Before {
@@ -104,7 +98,7 @@ impl Before {
         state.stage_displacement.clear();
         state.stage_force.clear();
         let (_, ahead) = step::look_ahead(old, AT_REST, &state, true);
-        let springs = ahead.contacts.iter().map(|c| (key(&c.history), (c.gap, c.stiffness)));
+        let springs = ahead.contacts.iter().map(|c| (key(&c.history), (c.gap, c.stiffness, c.length)));
         let springs = springs.collect();
         let mut faces: BTreeMap<Face, Vec<Bearing>> = BTreeMap::new();
         for contact in ahead.contacts.into_iter().filter(|contact| !contact.fresh) {
@@ -204,7 +198,10 @@ impl Carry<'_> {
     fn load(&self, contact: &VertexEdge, seeds: &[(ContactHistory, BondHistory)]) -> Option<Loaded> {
         if self.is_known(&contact.history) {
             let k = seeds.binary_search_by_key(&key(&contact.history), |(history, _)| key(history)).ok()?;
-            let (history, bond) = seeds[k];
+            let (mut history, bond) = seeds[k];
+            if history.normal_force != 0.0 {
+                self.go_on(contact, &mut history);
+            }
             return Some(Loaded { history, bond, shares: None });
         }
         self.bears(contact)
@@ -221,9 +218,16 @@ impl Carry<'_> {
         self.lineage.nodes[contact.history.node].zip(self.lineage.sides[contact.history.side])
     }
 
-    /// Whether a contact that goes on has another gap or stiffness than before, beside a node that the cut has made.
-    fn has_changed(&self, contact: &VertexEdge) -> bool {
-        self.was(contact).is_some_and(|was| self.before.springs.get(&was) != Some(&(contact.gap, contact.stiffness)))
+    /// Gives a contact that goes on with another gap or stiffness, beside a node that the cut has made, the rest length at
+    /// which it is under the pressure that it was under.
+    fn go_on(&self, contact: &VertexEdge, history: &mut ContactHistory) {
+        let was = self.was(contact).and_then(|was| self.before.springs.get(&was));
+        if let Some(&(gap, stiffness, length)) = was {
+            if (gap, stiffness) != (contact.gap, contact.stiffness) {
+                let closure = closure_under(contact, (gap, stiffness[0] / length));
+                history.unloaded = Unloaded { offset: 0.0, rest: self::gap(contact) + closure };
+            }
+        }
     }
 
     /// A contact on a face that the cut has made bears the stress that the rock has there.
@@ -347,6 +351,11 @@ impl Carry<'_> {
             history.filtered_normal = traction(|history| history.filtered_normal) * contact.length;
             history.unloaded = Unloaded { offset: 0.0, rest };
             history.sheared = history.shear_force / contact.stiffness[1];
+        } else {
+            let closure =
+                |of: &Bearing| closure_under(contact, (of.contact.gap, of.contact.stiffness[0] / of.contact.length));
+            let closure = closure(first) * (1.0 - share) + beyond.map_or(0.0, |other| closure(other) * share);
+            history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) + closure };
         }
         Some(Loaded { history, bond, shares: (!is_spring).then_some(face) })
     }
@@ -406,6 +415,13 @@ fn add_share(history: &mut ContactHistory, of: &ContactHistory, share: f64) {
 /// Gap between node and edge of a contact (m), wherever its spring is unloaded.
 fn gap(contact: &VertexEdge) -> f64 {
     contact.gap + contact.history.unloaded.gap()
+}
+
+/// Closure (m) at which a contact is under the pressure of another one by its gap (m) and its stiffness per length (Pa/m).
+/// Forces and lengths may have had a peak in the last step, as those of corners that slip off; a gap has none.
+fn closure_under(contact: &VertexEdge, (gap, stiffness): (f64, f64)) -> f64 {
+    let share = if gap < 0.0 { stiffness * contact.length / contact.stiffness[0] } else { 1.0 };
+    -gap * share
 }
 
 /// Gives the springs of a contact the rest lengths at which they carry its forces where it is.
