@@ -85,8 +85,8 @@ const AT_REST: Regime = Regime::Static { ramp: 0.0 };
 /// All contacts before the cut.
 struct Before {
     faces: BTreeMap<Face, Vec<Bearing>>,
-    /// Gap (m), stiffnesses (N/m per metre) and length (m) of each.
-    springs: BTreeMap<(NodeId, SideId), (f64, [f64; 2], f64)>,
+    /// Gap (m) and stiffnesses (N/m per metre) of each.
+    springs: BTreeMap<(NodeId, SideId), (f64, [f64; 2])>,
 }
 
 impl Before {
@@ -98,7 +98,7 @@ impl Before {
         state.stage_displacement.clear();
         state.stage_force.clear();
         let (_, ahead) = step::look_ahead(old, AT_REST, &state, true);
-        let springs = ahead.contacts.iter().map(|c| (key(&c.history), (c.gap, c.stiffness, c.length)));
+        let springs = ahead.contacts.iter().map(|c| (key(&c.history), (c.gap, c.stiffness)));
         let springs = springs.collect();
         let mut faces: BTreeMap<Face, Vec<Bearing>> = BTreeMap::new();
         for contact in ahead.contacts.into_iter().filter(|contact| !contact.fresh) {
@@ -219,14 +219,11 @@ impl Carry<'_> {
     }
 
     /// Gives a contact that goes on with another gap or stiffness, beside a node that the cut has made, the rest length at
-    /// which it is under the pressure that it was under.
+    /// which its spring is closed as far as it was.
     fn go_on(&self, contact: &VertexEdge, history: &mut ContactHistory) {
         let was = self.was(contact).and_then(|was| self.before.springs.get(&was));
-        if let Some(&(gap, stiffness, length)) = was {
-            if (gap, stiffness) != (contact.gap, contact.stiffness) {
-                let closure = closure_under(contact, (gap, stiffness[0] / length));
-                history.unloaded = Unloaded { offset: 0.0, rest: self::gap(contact) + closure };
-            }
+        if let Some(&(gap_before, _)) = was.filter(|was| **was != (contact.gap, contact.stiffness)) {
+            history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) - gap_before };
         }
     }
 
@@ -352,10 +349,9 @@ impl Carry<'_> {
             history.unloaded = Unloaded { offset: 0.0, rest };
             history.sheared = history.shear_force / contact.stiffness[1];
         } else {
-            let closure =
-                |of: &Bearing| closure_under(contact, (of.contact.gap, of.contact.stiffness[0] / of.contact.length));
-            let closure = closure(first) * (1.0 - share) + beyond.map_or(0.0, |other| closure(other) * share);
-            history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) + closure };
+            // As far closed as those that it takes the place of, whose forces and lengths may just have had a peak.
+            let before = first.contact.gap * (1.0 - share) + beyond.map_or(0.0, |other| other.contact.gap * share);
+            history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) - before };
         }
         Some(Loaded { history, bond, shares: (!is_spring).then_some(face) })
     }
@@ -415,13 +411,6 @@ fn add_share(history: &mut ContactHistory, of: &ContactHistory, share: f64) {
 /// Gap between node and edge of a contact (m), wherever its spring is unloaded.
 fn gap(contact: &VertexEdge) -> f64 {
     contact.gap + contact.history.unloaded.gap()
-}
-
-/// Closure (m) at which a contact is under the pressure of another one by its gap (m) and its stiffness per length (Pa/m).
-/// Forces and lengths may have had a peak in the last step, as those of corners that slip off; a gap has none.
-fn closure_under(contact: &VertexEdge, (gap, stiffness): (f64, f64)) -> f64 {
-    let share = if gap < 0.0 { stiffness * contact.length / contact.stiffness[0] } else { 1.0 };
-    -gap * share
 }
 
 /// Gives the springs of a contact the rest lengths at which they carry its forces where it is.
