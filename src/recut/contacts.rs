@@ -213,13 +213,13 @@ impl Carry<'_> {
         if self.is_of_cut(face) { Some(self.on_new_face(contact, face)) } else { self.on_old_face(contact, face) }
     }
 
-    /// What a contact after the cut was called before, if the cut has left its node and its side as they were.
+    /// Node and side of a contact before the cut, if the cut has left both as they were.
     fn was(&self, contact: &VertexEdge) -> Option<(NodeId, SideId)> {
         self.lineage.nodes[contact.history.node].zip(self.lineage.sides[contact.history.side])
     }
 
-    /// Gives a contact that goes on with another gap or stiffness, beside a node that the cut has made, the rest length at
-    /// which its spring is closed as far as it was.
+    /// Gives a contact that goes on with another gap or stiffness, beside a node that the cut has made, the rest length
+    /// at which its spring is closed as far as it was.
     fn go_on(&self, contact: &VertexEdge, history: &mut ContactHistory) {
         let was = self.was(contact).and_then(|was| self.before.springs.get(&was));
         if let Some(&(gap_before, _)) = was.filter(|was| **was != (contact.gap, contact.stiffness)) {
@@ -356,10 +356,10 @@ impl Carry<'_> {
         Some(Loaded { history, bond, shares: (!is_spring).then_some(face) })
     }
 
-    /// Hands the forces of contacts that have gone, and the part that those give away which have become shorter beside a
-    /// node that the cut has made, to the contacts that take their place on the same face: to the nearest ones on both
-    /// sides, as a beam on two supports does. So each face carries what it did, about where it did, and none of its
-    /// contacts pulls that has not pulled before.
+    /// Hands the forces of contacts that have gone, and the part that those give away which have become shorter beside
+    /// a node that the cut has made, to the contacts that take their place on the same face: to the nearest ones on
+    /// both sides, as a beam on two supports does. So each face carries what it did, about where it did, and none of
+    /// its contacts pulls that has not pulled before.
     fn hand_over(&self, loaded: &mut [(VertexEdge, Loaded)]) {
         let mut takers: BTreeMap<Face, Vec<usize>> = BTreeMap::new();
         let mut kept: BTreeMap<(NodeId, SideId), usize> = BTreeMap::new();
