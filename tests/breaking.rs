@@ -390,7 +390,7 @@ fn long_a_beam_that_shatters_gains_no_energy() {
             .collect();
     }
     for (size, angle, height) in cases {
-        let mut beam = simulation(&falling_beam(size, angle, (2.0 * G * height as f64).sqrt(), 0.5));
+        let mut beam = simulation(&falling_beam(size, angle, (2.0 * G * height).sqrt(), 0.5));
         let (mut first, mut most) = (f64::NAN, f64::NEG_INFINITY);
         let (mut least_fracture, mut fracture) = (0.0_f64, 0.0_f64);
         while beam.time() < 0.5 {
