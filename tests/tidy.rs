@@ -15,7 +15,7 @@ const ROOMS: [(&str, usize); 11] = [
     ("contact", 7650),
     ("state", 2200),
     ("step", 3400),
-    ("fracture", 1100),
+    ("fracture", 1200),
     ("recut", 1150),
     ("model", 6500),
     ("cosimulation", 2_800),
