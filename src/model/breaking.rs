@@ -101,7 +101,6 @@ impl Simulation {
         let masses = &self.workspace.mass_matrix;
         let now = (&self.built.model, &self.state);
         self.state = recut::carry_break(&lineage, now, masses, &ground.model, &cut);
-        self.state.cuts = cuts;
         self.stand_on(ground);
         step::prepare(&self.built.model, &self.state, &mut self.workspace);
         let after = self.energy_of_rock_and_springs();
@@ -161,7 +160,7 @@ impl Simulation {
             let Some((built, lineage)) = ground.and_then(|ground| Some((ground.built, ground.lineage?))) else { break };
             let before = (&cut.built.model, &cut.state);
             cut.state = recut::carry(&lineage, before, &cut.workspace.mass_matrix, &built.model);
-            cut.state.cuts = cuts.to_vec();
+            cut.state.cuts.push(cuts[count]);
             cut.stand_on(built);
             step::prepare(&cut.built.model, &cut.state, &mut cut.workspace);
         }

@@ -53,7 +53,7 @@ pub fn carry_contacts(
         return;
     }
     let carry = Carry { lineage, old, was, new, before: Before::new(old, was) };
-    let softens = state.laws.iter().any(|law| law.softening.is_some());
+    let softens = step::has_bonds(new, state);
     let mut seeds = carry.kept();
     seeds.extend(carry.touching(state));
     seeds.sort_by_key(|(history, _)| key(history));

@@ -72,8 +72,8 @@ int main(int argc, char **argv)
         act(model, half, half + 1);
     unsigned char *broken = bytes_of(model, &broken_size);
     act(model, half, STEPS);
-    check_parts(model);
     unsigned char *end = bytes_of(model, &end_size);
+    check_parts(model);
 
     for (int k = 0; k < 3; k++) {
         OK(enmm_state_restore(model, before));
