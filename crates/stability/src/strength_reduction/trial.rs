@@ -1,5 +1,6 @@
 //! One trial: the strength falls from that of the slope at rest to 1/F of its own, and the motion is judged.
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -10,7 +11,7 @@ use super::setting::{Geometry, Setting};
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{End, FailingBlock, Trial};
 use enmm::geometry::Vector;
-use enmm::model::tables::BlockId;
+use enmm::model::tables::{BlockId, Model};
 use enmm::model::{BoltCondition, BoltState, Ledger, Mechanism, Simulation, StepError, StepReport};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
@@ -82,6 +83,7 @@ impl Fall {
 }
 
 /// Common start of all trials.
+#[derive(Clone)]
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,
@@ -133,6 +135,17 @@ impl Base {
     /// Blocks that can move.
     fn moving(&self) -> impl Iterator<Item = BlockId> {
         BlockId::all(self.free.len()).filter(|&b| self.free[b])
+    }
+
+    /// This start with the sections cut that have broken in a trial since, so that both have the same blocks.
+    fn with_breaks_of(&self, trial: &Simulation) -> Self {
+        let simulation = self.simulation.with_breaks_of(trial);
+        Self { free: free(&simulation), simulation, ..*self }
+    }
+
+    /// Whether a trial has broken no more sections than this start has.
+    fn has_blocks_of(&self, trial: &Simulation) -> bool {
+        self.simulation.cuts().len() == trial.cuts().len()
     }
 
     /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
@@ -228,7 +241,11 @@ impl Base {
         let scales = self.scales.of(fall.map_or(0.0, |fall| fall.time), begun_as.geometry);
         let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
-        let mut positions = self.positions(&simulation);
+        let mut base = Cow::Borrowed(self);
+        if !base.has_blocks_of(&simulation) {
+            base = Cow::Owned(self.with_breaks_of(&simulation));
+        }
+        let mut positions = base.positions(&simulation);
         let steps = simulation.steps_in(scales.window);
         let (mut first, mut residual) = (None, 0.0);
         let mut judged = None;
@@ -242,11 +259,15 @@ impl Base {
                 }
             };
             let first = *first.get_or_insert(last.ledger);
-            let before = std::mem::replace(&mut positions, self.positions(&simulation));
-            let few = self.few(&simulation);
+            if !base.has_blocks_of(&simulation) {
+                positions = parts_of(&positions, base.simulation.model(), &simulation);
+                base = Cow::Owned(self.with_breaks_of(&simulation));
+            }
+            let before = std::mem::replace(&mut positions, base.positions(&simulation));
+            let few = base.few(&simulation);
             let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
             let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
-            let sample = self.sample(&simulation, &last, &first, way, &few);
+            let sample = base.sample(&simulation, &last, &first, way, &few);
             residual = open_since(fall.is_none().then_some(&first), &last.ledger);
             samples.push(Sample { time: simulation.time() - start, ..sample });
             judged = judge::judge(&samples, &scales);
@@ -264,8 +285,8 @@ impl Base {
             kinetic: end.kinetic,
             released: end.released,
             acceleration: judge::acceleration(&samples),
-            failing: self.failing(&simulation, verdict),
-            loose: self.loose(&simulation),
+            failing: base.failing(&simulation, verdict),
+            loose: base.loose(&simulation),
             // Slip that stretches bars of which none has yielded is elastic.
             is_far: end.displacement > self.far && (yields || !has_bars),
             bars_yield: yields,
@@ -279,8 +300,9 @@ impl Base {
 
     /// The way in which blocks have moved since the trial began; none where nothing fails.
     pub fn mechanism(&self, simulation: &Simulation, failing: &[FailingBlock]) -> Option<Mechanism> {
-        let blocks: Vec<BlockId> = failing.iter().map(|block| BlockId::new(block.block as usize)).collect();
-        simulation.mechanism_since(&self.simulation.state().displacement, &blocks)
+        let blocks: Vec<BlockId> = failing.iter().filter_map(|block| simulation.block_labelled(block.block)).collect();
+        let begun = self.simulation.with_breaks_of(simulation);
+        simulation.mechanism_since(&begun.state().displacement, &blocks)
     }
 
     /// The motion at the end of a window in which the fastest block has gone a way (m), without that of a few.
@@ -324,7 +346,7 @@ impl Base {
                 let (_, velocity, spin, _) = simulation.rigid_motion_of(b);
                 let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
-                    block: b.number(),
+                    block: model.labels[b],
                     position: model.covers.block_centroid(b),
                     area: model.covers.block_area(b),
                     mass: model.mass_matrix.total[b],
@@ -339,9 +361,9 @@ impl Base {
 
     /// Blocks that are too few to decide about the slope and have gone farther than elasticity explains.
     fn loose(&self, simulation: &Simulation) -> Vec<FailingBlock> {
-        let few = self.few(simulation);
-        let is_loose =
-            |m: &FailingBlock| m.displacement > self.scales.elastic && few.iter().any(|b| b.number() == m.block);
+        let labels = &simulation.model().labels;
+        let few: Vec<u32> = self.few(simulation).into_iter().map(|block| labels[block]).collect();
+        let is_loose = |m: &FailingBlock| m.displacement > self.scales.elastic && few.contains(&m.block);
         self.motions(simulation).into_iter().filter(is_loose).collect()
     }
 
@@ -360,6 +382,25 @@ impl Base {
         motions.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
         motions
     }
+}
+
+/// Displacements of blocks of a model as those of their parts in a trial whose rock has broken since.
+fn parts_of(positions: &[(BlockId, Vector3<f64>)], model: &Model, trial: &Simulation) -> Vec<(BlockId, Vector3<f64>)> {
+    let of = |label: u32| positions.iter().find(|(block, _)| model.labels[*block] == label).map(|(_, moved)| *moved);
+    let parent = |label: u32| trial.cuts().iter().find(|cut| cut.part == label).map(|cut| cut.block);
+    let free = free(trial);
+    let blocks = BlockId::all(free.len()).filter(|&block| free[block]);
+    let whole = |block: BlockId| {
+        let mut label = Some(trial.model().labels[block]);
+        while let Some(own) = label {
+            if let Some(moved) = of(own) {
+                return moved;
+            }
+            label = parent(own);
+        }
+        Vector3::zeros()
+    };
+    blocks.map(|block| (block, whole(block))).collect()
 }
 
 /// Which blocks can move.
