@@ -1,9 +1,9 @@
 //! Explicit numerical manifold method (ENMM) for jointed rock.
 //!
-//! Rooms, each importing only from those above it: [`geometry`], `cover`, `mechanics`, `contact`, `state`, `step`,
-//! `fracture`, `recut`, [`model`], [`cosimulation`]. `ARCHITECTURE.md` draws the graph; `docs/theory.md` numbers the
-//! equations that the code cites. The crate `enmm-case` holds the case that a user writes. This crate reads and writes
-//! no files: `enmm-io` reads cases, `enmm-run` runs them and writes results.
+//! Rooms, each importing only from those above it: [`geometry`], `cover`, `mechanics`, `contact`, `flow`, `state`,
+//! `step`, `fracture`, `recut`, [`model`], [`cosimulation`]. `ARCHITECTURE.md` draws the graph; `docs/theory.md`
+//! numbers the equations that the code cites. The crate `enmm-case` holds the case that a user writes. This crate
+//! reads and writes no files: `enmm-io` reads cases, `enmm-run` runs them and writes results.
 //!
 //! # API boundary
 //!
@@ -37,6 +37,7 @@ macro_rules! clone_without_allocating {
 mod contact;
 pub mod cosimulation;
 mod cover;
+mod flow;
 mod fracture;
 pub mod geometry;
 mod mechanics;

@@ -24,6 +24,7 @@ mod crumbs;
 mod determinism;
 mod ends_and_meshes;
 mod fast_failures;
+mod flow;
 mod found_contacts;
 mod fracture;
 mod fractured_slope;

@@ -5,6 +5,8 @@ use enmm_case::keys::Plain;
 use std::fmt::Display;
 use std::sync::Arc;
 
+use enmm_seepage::DELTA;
+
 use crate::contact::{
     BoltState, BondHistory, ContactHistory, FoundContact, FoundContacts, JointLaw, Meeting, NeighbourList, Release,
     Roughness, Unloaded,
@@ -12,8 +14,8 @@ use crate::contact::{
 use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
-    Counters, Course, Drive, Event, EventKind, Events, FrictionDelay, Inputs, Ledger, Model, MostRest, State,
-    WorstSection,
+    Counters, Course, Drive, Event, EventKind, Events, FlowBalance, FrictionDelay, Inputs, Ledger, Model, MostRest,
+    Seepage, State, WorstSection,
 };
 
 use crate::step::has_bonds;
@@ -160,6 +162,7 @@ impl Simulation {
             law_switch: _,
             damping: _,
             water_density: _,
+            seepage: _,
             bolts: _,
             drive,
             events,
@@ -279,6 +282,7 @@ impl Simulation {
             between("damping", damping, 0.0, 1.0)?;
         }
         between("water_density", state.water_density, 0.0, RATE)?;
+        check_seepage(model, state.seepage.as_ref(), state.stage)?;
         same("law_switch", &state.law_switch, &switch)?;
         for (k, bolt) in state.bolts.iter().enumerate() {
             let BoltState { active: _, broken: _, rest, natural, force } = *bolt;
@@ -304,6 +308,30 @@ fn check_section(what: &str, share: f64, (ends, carries): ([Point; 2], &Resultan
     let Resultants { normal, shear, moment } = *carries;
     let of = [("normal", normal), ("shear", shear), ("moment", moment)];
     of.into_iter().try_for_each(|(field, value)| number(format_args!("{what}.{field}"), value, FORCE))
+}
+
+fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
+    let (net, seepage) = match (&model.flow, seepage) {
+        (Some(net), Some(seepage)) => (net, seepage),
+        (None, None) => return Ok(()),
+        (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
+        (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
+    };
+    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    length("seepage.unknowns", unknowns.len(), net.places.len())?;
+    length("seepage.conducts", conducts.len(), net.pieces.len())?;
+    length("seepage.flooded", flooded.len(), model.covers.block_count())?;
+    for (k, unknown) in unknowns.iter().enumerate() {
+        between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
+    }
+    in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
+    for (k, FlowBalance { stage: of, sums, residual }) in balances.iter().enumerate() {
+        at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
+        length("seepage.balances.sums", sums.len(), net.heads.len() + 2)?;
+        numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
+        number("seepage.balances.residual", *residual, RATE)?;
+    }
+    Ok(())
 }
 
 fn check_drive(model: &Model, drive: &Drive) -> Fit {

@@ -1,6 +1,7 @@
 //! How what the user wrote ([`Case`]) is built, and the façade that callers hold ([`Simulation`]).
 
 pub mod assemble;
+mod bonds;
 mod breaking;
 mod failure;
 pub mod fit;
@@ -11,12 +12,14 @@ mod observe;
 pub mod overlap;
 mod rest;
 mod restless;
+mod seepage;
 pub mod settle;
 mod simulation;
 mod stage;
 pub mod tables;
 mod tune;
 
+pub use bonds::{BondState, bond_states};
 pub use enmm_case as case;
 pub use enmm_case::Case;
 
@@ -28,12 +31,14 @@ pub use observe::{
     BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,
 };
 pub use restless::Restless;
+pub use seepage::FlowSurvey;
 pub use simulation::Simulation;
 pub use tune::Tunable;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
-    BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, Inputs, Ledger, Port, PortKind, Quantity, State,
+    BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, FlowBalance, Inputs, Ledger, Port, PortKind,
+    Quantity, Seepage, State,
 };
 pub use crate::step::{StepError, StepReport, Wanted};

@@ -72,6 +72,10 @@ impl Simulation {
         self.change_fixities(stage);
         self.change_bolts(stage)?;
         self.change_water(stage);
+        // Dynamic stages hold the pressures of before.
+        if stage == 0 || self.case.stages[stage].kind == StageKind::Static {
+            self.find_flow(stage, start)?;
+        }
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
         let (model, state) = (&self.built.model, &mut self.state);

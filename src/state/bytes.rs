@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use super::State;
 
 const MAGIC: &[u8; 8] = b"ENMMCKPT";
-const FORMAT: u32 = 17;
+const FORMAT: u32 = 18;
 const TEXT_MAX: usize = 256;
 /// Bytes of length and checksum.
 const SUMMARY: usize = 12;

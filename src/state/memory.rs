@@ -2,10 +2,11 @@
 
 use crate::contact::Boundary;
 use crate::cover::Covers;
+use crate::flow::FlowNet;
 use crate::mechanics::MassMatrix;
 
 use super::workspace::{SelectionBuffers, YieldBuffers};
-use super::{Drive, Events, Inputs, Model, State, Workspace};
+use super::{Drive, Events, Inputs, Model, Seepage, State, Workspace};
 
 /// Name of a part of a heap, and its bytes.
 pub type Part = (&'static str, usize);
@@ -48,9 +49,14 @@ impl Model {
             ("masses", mass_matrix(&self.mass_matrix) + shared_masses(&self.mass_matrix)),
             ("yielding", self.averaging.bytes()),
             ("in-situ stress", sum(&[&self.pre_stress, &self.pre_stress_out])),
+            ("flow in joints", self.flow.as_ref().map_or(0, net)),
             ("supports and ports", sum(&[&self.supports, &self.free_field, &self.bolts]) + held + ports),
         ]
     }
+}
+
+fn net(flow: &FlowNet) -> usize {
+    sum(&[&flow.pieces, &flow.places, &flow.outcrops, &flow.apertures])
 }
 
 impl State {
@@ -88,6 +94,7 @@ impl State {
             law_switch: _,
             damping: _,
             water_density: _,
+            seepage,
             stage_starts: _,
             most_rest: _,
             stage: _,
@@ -111,8 +118,14 @@ impl State {
             ("inputs", inputs(from) + inputs(to) + sum(&[&before.rate, moved])),
             ("events", events(happened) + removed.bytes()),
             ("sections", worst_sections.bytes() + cuts.bytes()),
+            ("flow in joints", seepage.as_ref().map_or(0, flowing)),
         ]
     }
+}
+
+fn flowing(seepage: &Seepage) -> usize {
+    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    sum(&[unknowns, conducts, flooded, balances])
 }
 
 impl Workspace {

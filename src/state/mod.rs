@@ -11,6 +11,7 @@ mod ledger;
 mod memory;
 mod model;
 mod quantity;
+mod seepage;
 mod workspace;
 
 pub use cut::{Cut, WorstSection};
@@ -24,6 +25,7 @@ pub use model::{
     TimedRecord, Water, WaterSurface,
 };
 pub use quantity::Quantity;
+pub use seepage::{FlowBalance, Seepage};
 pub use workspace::{
     ChunkSums, ContactOutcome, Face, FaceBuffers, Flow, Grown, MotionBuffers, Seconds, SelectionBuffers,
     SupportBuffers, Suspect, SweepBuffers, Workspace, YieldBuffers,
@@ -110,6 +112,8 @@ pub struct State {
     pub damping: Option<f64>,
     /// Density of water (kg/m³); 0 where there is none.
     pub water_density: f64,
+    /// Water in the joints, if it flows.
+    pub seepage: Option<Seepage>,
     /// Displacements at the start of a static stage (m).
     pub stage_displacement: Vec<Vector>,
     /// Forces out of balance at the start of a static stage (N/m).
@@ -138,8 +142,8 @@ clone_without_allocating! {
     State {
         stage stage_start stage_starts most_rest stage_step step part dt_last displacement velocity contacts
         bonds sections found friction_delay neighbours support_force support_rest worst_sections cuts fix_active removed
-        laws law_switch damping water_density stage_displacement stage_force drive bolts plastic columns acceleration
-        static_stretch events ledger counters
+        laws law_switch damping water_density seepage stage_displacement stage_force drive bolts plastic columns
+        acceleration static_stretch events ledger counters
     }
 }
 

@@ -5,6 +5,7 @@ use crate::contact::{
     Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, ElementId};
+use crate::flow::FlowNet;
 use crate::geometry::{Point, Vector};
 use crate::mechanics::{
     Averaging, Chunks, Column, ColumnPosition, Elasticity, Load, MassMatrix, PreStress, Record, RockStrength,
@@ -264,6 +265,8 @@ pub struct Model {
     pub ports: Vec<Port>,
     /// Water, if any.
     pub water: Option<Water>,
+    /// Joints that conduct water, if it flows.
+    pub flow: Option<FlowNet>,
     /// Gravity (m/s²).
     pub gravity: Vector,
     /// In-situ stress, if any.
@@ -323,7 +326,8 @@ impl Model {
 
     /// Density of water at the start (kg/m³); 0 where there is none.
     pub fn water_density(&self) -> f64 {
-        self.water.as_ref().map_or(0.0, |water| water.density)
+        let flows = || self.flow.as_ref().map_or(0.0, |flow| flow.density);
+        self.water.as_ref().map_or_else(flows, |water| water.density)
     }
 
     /// Material point: sum of a cover field over an element's covers at reference point `p`.

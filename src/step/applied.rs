@@ -1,11 +1,12 @@
 //! Actions on the rock from outside: gravity, loads of the case, and inputs of a host.
 
-use crate::contact::EdgeId;
-use crate::cover::{self, BlockId, CoverId, ElementId};
+use crate::cover::{self, BlockId, CoverId};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{self, Forces, LoadAction, pressure};
-use crate::state::{Drive, Model, Port, State, Water};
+use crate::mechanics::{self, Forces, LoadAction};
+use crate::state::{Drive, Model, State};
 
+use super::faces::Faces;
+use super::joint_water::JointWater;
 use super::{Substep, quiet};
 
 /// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
@@ -32,6 +33,7 @@ fn pushes(model: &Model, state: &State) -> bool {
     let any_scalar = |values: &[f64]| values.iter().any(|v| *v != 0.0);
     model.loads.iter().any(|load| !matches!(load.action, LoadAction::Body(_)))
         || model.water.is_some()
+        || model.flow.is_some()
         || quiet::frozen(model, state).next().is_some()
         || [from, to].into_iter().any(|inputs| {
             any(&inputs.port_traction)
@@ -50,13 +52,17 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
     }
     let faces = Faces { model, state };
     let share = state.drive.share(t);
+    let level = state.drive.water_level(share);
+    let weight = state.water_density * state.drive.gravity(share).norm() * ramp;
     if let Some(water) = &model.water {
-        let level = state.drive.water_level(share);
-        let weight = state.water_density * state.drive.gravity(share).norm() * ramp;
         faces.push_water(water, level, weight, force);
         if model.strengths.iter().flatten().any(|strength| strength.is_porous) {
             push_pores(model, state, |at| weight * water.surfaces[state.stage as usize].depth(level, at), force);
         }
+    }
+    if let (Some(net), Some(seepage)) = (&model.flow, &state.seepage) {
+        let reservoir = model.water.as_ref().map(|water| (water, level));
+        JointWater { net, seepage, reservoir, weight }.push(&faces, force);
     }
     for (k, port) in model.ports.iter().enumerate() {
         let (traction, pressure) = state.drive.port(k, share);
@@ -94,66 +100,5 @@ fn push_pores(model: &Model, state: &State, pressure: impl Fn(Point) -> f64, for
                 force.on_rock(cover, at.carry_normal(gradient) * push);
             }
         }
-    }
-}
-
-/// Boundary edges at their current positions.
-struct Faces<'a> {
-    model: &'a Model,
-    state: &'a State,
-}
-
-impl Faces<'_> {
-    fn push_water(&self, water: &Water, level: f64, weight: f64, force: &mut (impl Forces + ?Sized)) {
-        let surface = &water.surfaces[self.state.stage as usize];
-        let rise = level - surface.level;
-        for &edge in &water.edges {
-            let [a, b] = self.ends(edge);
-            let forces = if surface.table.is_empty() {
-                pressure::hydrostatic(a, b, level, weight)
-            } else {
-                pressure::under_table(a, b, &surface.table, rise, weight)
-            };
-            let sliver = self.model.boundary.sliver(edge).filter(|&sliver| self.model.is_porous(sliver));
-            self.spread(edge, sliver, forces, force);
-        }
-    }
-
-    fn push_port(&self, port: &Port, traction: Vector, pressure: f64, force: &mut (impl Forces + ?Sized)) {
-        if traction == Vector::zeros() && pressure == 0.0 {
-            return;
-        }
-        let reference = &self.model.boundary.reference;
-        for &edge in &port.edges {
-            let length = (reference[self.model.boundary.after(edge)] - reference[edge]).norm();
-            let dead = traction * (0.5 * length);
-            if pressure == 0.0 {
-                self.spread(edge, None, [dead; 2], force);
-            } else {
-                let [a, b] = self.ends(edge);
-                self.spread(edge, None, pressure::uniform(a, b, pressure).map(|f| f + dead), force);
-            }
-        }
-    }
-
-    /// Current positions of both ends of an edge (m).
-    fn ends(&self, edge: EdgeId) -> [Point; 2] {
-        let boundary = &self.model.boundary;
-        let stars = &self.model.covers.star_position;
-        [edge, boundary.after(edge)].map(|k| boundary.sample(k, stars) + boundary.sample(k, &self.state.displacement))
-    }
-
-    /// Spreads forces at both ends of an edge over their covers, or over those of its sliver, whose pores have a
-    /// pressure that balances them.
-    fn spread(&self, edge: EdgeId, sliver: Option<ElementId>, forces: [Vector; 2], force: &mut (impl Forces + ?Sized)) {
-        let Model { boundary, covers, .. } = self.model;
-        if self.state.removed[boundary.block[edge]] {
-            return;
-        }
-        let ends = [edge, boundary.after(edge)].map(|k| match sliver {
-            Some(sliver) => (covers.element_covers[sliver], covers.weights(sliver, boundary.reference[k])),
-            None => (boundary.covers[k], boundary.weights[k]),
-        });
-        force.on_edge(&ends.map(|end| end.0), &ends.map(|end| end.1), forces);
     }
 }

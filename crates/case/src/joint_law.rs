@@ -98,6 +98,10 @@ keys! {
         /// as deep as it is long.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub breaks: Option<Breaks>,
+        /// Hydraulic aperture (m) at the start, for `[flow]`; 0 for joints that do not conduct; default:
+        /// `flow.aperture`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub aperture: Option<f64> => crate::flow::LAW_APERTURE.label("Aperture"),
     }
 }
 

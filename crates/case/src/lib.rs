@@ -7,6 +7,7 @@ mod drawing;
 mod expand;
 mod fingerprint;
 mod fix;
+mod flow;
 mod fracture;
 mod ground;
 mod ground_motion;
@@ -46,6 +47,7 @@ pub use domain::{Domain, JointTrace, Mesh};
 pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use fix::{Axes, Fix};
+pub use flow::{Flow, Head};
 pub use fracture::{Fracture, RockFracture};
 pub use ground::{Axis, BaseMotion, FreeField, Quiet, RecordKeys};
 pub use ground_motion::GroundMotion;
@@ -162,6 +164,12 @@ pub struct Case {
     /// Water with a level surface.
     #[serde(default)]
     pub water: Option<Water>,
+    /// Water that flows in the joints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow: Option<Flow>,
+    /// Heads that are held in joints.
+    #[serde(default, rename = "head", skip_serializing_if = "Vec::is_empty")]
+    pub heads: Vec<Head>,
     /// Named places where hosts exchange values with the model.
     #[serde(default, rename = "port")]
     pub ports: Vec<Port>,

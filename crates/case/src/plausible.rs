@@ -7,12 +7,12 @@ use crate::key::Key;
 use crate::keys::{Rule, unit};
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{
-    Bolt, BoltPattern, Case, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh, Output, Port,
+    Bolt, BoltPattern, Case, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh, Output, Port,
     RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
 };
 
 /// Tables whose keys have usual values, by their place in a case: without the numbers of lists, and with `*` for names.
-const TABLES: [(&str, &[Rule]); 16] = [
+const TABLES: [(&str, &[Rule]); 17] = [
     ("rock.*", Rock::KEYS),
     ("rock.*.hoek_brown", HoekBrown::KEYS),
     ("rock.*.fracture", RockFracture::KEYS),
@@ -29,6 +29,7 @@ const TABLES: [(&str, &[Rule]); 16] = [
     ("load", Load::KEYS),
     ("port", Port::KEYS),
     ("water", Water::KEYS),
+    ("flow", Flow::KEYS),
 ];
 
 /// Usual values of what is measured: peaks of records of earthquakes. Below the first a record hardly moves anything,

@@ -1,5 +1,8 @@
 //! Stages of a case.
 
+use std::collections::BTreeMap;
+
+use crate::flow::HEAD;
 use crate::joint_law::{COHESION, FRICTION, TENSION};
 use crate::keys::shared::{PLACE, TIME};
 use crate::keys::unit::{NUMBER, SECOND};
@@ -73,6 +76,10 @@ keys! {
         /// that of `[water]`. What hosts have moved the level by ends with it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub water: Option<WaterSurface>,
+        /// Static: levels (m) of heads by the name of their `[[head]]`, from the start of this stage on; not in the
+        /// first stage, which has those of `[[head]]`.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        pub heads: BTreeMap<String, f64> => HEAD,
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use enmm::model::Simulation;
+use enmm::model::{FlowSurvey, Simulation};
 use enmm_io::LoadedCase;
 use enmm_io::numbers::three_digits;
 use enmm_run::check::{BridgeRecord, Check};
@@ -130,6 +130,17 @@ fn bridges(found: &[BridgeRecord]) -> Vec<String> {
     found.iter().take(BRIDGES).map(tell).chain(more).collect()
 }
 
+/// The net of joints in which water flows.
+fn flow(survey: &FlowSurvey) -> String {
+    let FlowSurvey { nodes, pieces, heads, outcrops, dead_ends, length, isolated, transmissivity: [least, most] } =
+        *survey;
+    format!(
+        "flow in {pieces} pieces of joint, {length:.3} m, between {nodes} nodes: {heads} with a head, {outcrops} open \
+         to the air, {dead_ends} dead ends; {isolated:.3} m isolated and dry; transmissivity {least:.3e} to {most:.3e} \
+         m²/s"
+    )
+}
+
 fn table(found: &Check) -> String {
     let range = |values: &[f64]| match values {
         [first, .., last] => format!("{first:.6} to {last:.6}"),
@@ -168,6 +179,7 @@ fn table(found: &Check) -> String {
     lines.extend(found.rock_masses.iter().map(rock_mass));
     lines.extend(found.records.iter().map(|motion| format!("record {}", motion.text())));
     lines.extend(bridges(&found.bridges));
+    lines.extend(found.flow.iter().map(flow));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.join("\n")

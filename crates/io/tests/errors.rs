@@ -20,10 +20,11 @@ fn unknown_section_names_the_nearest_known_section() {
     assert_refused(
         "[mesh]",
         "[mehs]",
-        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, bridge, \
-         cut, domain, ensemble, fix, fmu, fracture, free_field, gravity, in_situ, initial_velocity, joint, joint_law, \
-         joint_set, law_region, layers, load, mesh, monitor, output, port, quiet, random, random_correlation, report, \
-         rock, section, solver, stage, tessellation, title, transform, water; rename or remove it",
+        "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, \
+         bridge, cut, domain, ensemble, fix, flow, fmu, fracture, free_field, gravity, head, in_situ, \
+         initial_velocity, joint, joint_law, joint_set, law_region, layers, load, mesh, monitor, output, port, \
+         quiet, random, random_correlation, report, rock, section, solver, stage, tessellation, title, transform, \
+         water; rename or remove it",
     );
 }
 

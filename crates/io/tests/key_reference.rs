@@ -178,7 +178,8 @@ fn wrapped(text: &str) -> String {
 
 /// The number of a key, or of the lists of a key.
 pub fn number_of(property: &Json) -> &Json {
-    if property["items"].is_object() { number_of(&property["items"]) } else { property }
+    let inner = ["items", "additionalProperties"].into_iter().map(|name| &property[name]);
+    inner.filter(|inner| inner.is_object()).map(number_of).next().unwrap_or(property)
 }
 
 /// The values that a key takes, as its schema says them.

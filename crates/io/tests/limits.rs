@@ -68,8 +68,11 @@ fn ranges_of_the_schema_are_those_that_the_program_checks() {
 fn refusal(source: &Source, path: &[&str], key: &str, value: f64) -> Option<String> {
     let mut table = source.table.clone();
     let mut number = find(&mut table, path, key)?;
-    while number.is_array() {
-        number = number.get_mut(0)?;
+    while number.is_array() || number.is_table() {
+        number = match number {
+            toml::Value::Table(named) => named.iter_mut().next()?.1,
+            list => list.get_mut(0)?,
+        };
     }
     let is_whole = number.is_integer() && value.fract() == 0.0 && value.abs() < 1e18;
     *number = if is_whole { toml::Value::Integer(value as i64) } else { toml::Value::Float(value) };

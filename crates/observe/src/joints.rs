@@ -3,15 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use enmm::geometry::{Point, TraceId, Vector, segment};
-use enmm::model::tables::{BlockId, Boundary, EdgeId, NodeId, VertexEdge};
+use enmm::geometry::{Point, Vector};
+use enmm::model::tables::{BlockId, Boundary, EdgeId, Facing, Facings, NodeId, VertexEdge};
 use enmm::model::{ContactState, Quantity, Simulation};
 
 use crate::bonds::{BondState, bond_states};
 use crate::edges::EdgeStates;
-
-/// Overlap of two faces, relative to the shorter edge, below which they do not lie on each other.
-const SLIVER: f64 = 1e-6;
 
 /// A straight piece of joint now.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,15 +46,6 @@ pub const JOINT_QUANTITIES: [Quantity<JointPiece>; 4] = [
     Quantity::plain("normal_stress", "Pa", "Normal stress, tension positive", |joint| joint.normal_stress),
     Quantity::plain("shear_stress", "Pa", "Shear stress", |joint| joint.shear_stress),
 ];
-
-/// A piece of joint at the start: two edges of the boundary, and the share of the way along each where it begins and
-/// ends. The second edge runs back.
-#[derive(Debug, Clone, Copy)]
-struct Facing {
-    edges: [EdgeId; 2],
-    spans: [[f64; 2]; 2],
-    face: usize,
-}
 
 /// The joints of a model as it was built: which edges of the boundary face each other.
 #[derive(Debug, Clone)]
@@ -101,25 +89,8 @@ impl Joints {
     /// Finds the faces that lie on each other.
     pub fn of(simulation: &Simulation) -> Self {
         let boundary = &simulation.model().boundary;
-        let traces = &simulation.built().traces;
-        // Edges by trace and by the side of its polyline on which they lie.
-        let mut lines: BTreeMap<(TraceId, usize), [Vec<Stretch>; 2]> = BTreeMap::new();
-        for edge in boundary.edges() {
-            let Some((trace, points)) =
-                boundary.trace[edge].and_then(|trace| Some((trace, traces.get(trace.index())?)))
-            else {
-                continue;
-            };
-            let (side, stretch) = Stretch::of(&points.0, boundary, edge);
-            lines.entry((trace, side)).or_default()[usize::from(stretch.is_back)].push(stretch);
-        }
-        let mut joints = Self { pieces: Vec::new(), of_edge_start: Vec::new(), of_edges: Vec::new(), faces: 0 };
-        for [forth, back] in lines.values_mut() {
-            for line in [&mut *forth, &mut *back] {
-                line.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]).then(a.edge.cmp(&b.edge)));
-            }
-            joints.pair(boundary, forth, back);
-        }
+        let Facings { pieces, faces, .. } = Facings::of(boundary, &simulation.built().traces);
+        let mut joints = Self { pieces, of_edge_start: Vec::new(), of_edges: Vec::new(), faces };
         joints.index(boundary.len());
         joints
     }
@@ -141,24 +112,6 @@ impl Joints {
     fn on(&self, edge: EdgeId) -> &[u32] {
         let [start, end] = [0, 1].map(|next| self.of_edge_start[edge.index() + next] as usize);
         &self.of_edges[start..end]
-    }
-
-    /// Appends the pieces where two rows of edges along one line overlap.
-    fn pair(&mut self, boundary: &Boundary, forth: &[Stretch], back: &[Stretch]) {
-        let mut blocks = None;
-        let (mut i, mut j) = (0, 0);
-        while let (Some(a), Some(b)) = (forth.get(i), back.get(j)) {
-            let [from, to] = [a.ends[0].max(b.ends[0]), a.ends[1].min(b.ends[1])];
-            let shorter = (a.ends[1] - a.ends[0]).min(b.ends[1] - b.ends[0]);
-            if to - from > SLIVER * shorter {
-                let here = Some([boundary.block[a.edge], boundary.block[b.edge]]);
-                self.faces += usize::from(here != blocks);
-                blocks = here;
-                let spans = [[a.share(from), a.share(to)], [b.share(from), b.share(to)]];
-                self.pieces.push(Facing { edges: [a.edge, b.edge], spans, face: self.faces - 1 });
-            }
-            if a.ends[1] < b.ends[1] { i += 1 } else { j += 1 }
-        }
     }
 
     /// The joints now; those of excavated blocks are left out.
@@ -263,35 +216,6 @@ impl Joints {
             edges.filter_map(|own| facing(own, boundary.block[edge])).map(|(face, is_first)| (face, !is_first)).next()
         };
         facing(edge, other).or_else(beside)
-    }
-}
-
-/// An edge along a straight line: from and to, as distances (m) along it.
-#[derive(Debug, Clone, Copy)]
-struct Stretch {
-    edge: EdgeId,
-    ends: [f64; 2],
-    is_back: bool,
-}
-
-impl Stretch {
-    /// The side of a polyline on which an edge lies, and the edge along it.
-    fn of(points: &[Point], boundary: &Boundary, edge: EdgeId) -> (usize, Self) {
-        let [a, b] = [boundary.reference[edge], boundary.reference[boundary.after(edge)]];
-        let middle = (a + b) * 0.5;
-        let distance = |k: usize| segment::distance(middle, points[k], points[k + 1]);
-        let sides = 0..points.len().saturating_sub(1);
-        let side = sides.min_by(|&i, &j| distance(i).total_cmp(&distance(j))).unwrap_or_default();
-        let [from, to] = [points[side], points[(side + 1).min(points.len() - 1)]];
-        let along = (to - from) / (to - from).norm();
-        let [s, t] = [a, b].map(|p| (p - from).dot(&along));
-        (side, Self { edge, ends: [s.min(t), s.max(t)], is_back: t < s })
-    }
-
-    /// Share of the way along the edge at a distance (m) along the line.
-    fn share(&self, distance: f64) -> f64 {
-        let share = (distance - self.ends[0]) / (self.ends[1] - self.ends[0]);
-        if self.is_back { 1.0 - share } else { share }
     }
 }
 

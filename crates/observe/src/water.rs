@@ -2,7 +2,7 @@
 
 use enmm::geometry::Point;
 use enmm::model::Simulation;
-use enmm::model::tables::EdgeId;
+use enmm::model::tables::{EdgeId, FlowPiece, Wet, wet};
 
 /// A wet edge of the boundary now.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -15,8 +15,40 @@ pub struct WetEdge {
     pub pressure: [f64; 2],
 }
 
-/// All edges of the boundary that the water reaches at its level now.
+/// All edges of the boundary that the water reaches at its level now, and both faces of joints as far as water flows
+/// in them.
 pub fn wet_edges(simulation: &Simulation) -> Vec<WetEdge> {
+    let mut edges = still_edges(simulation);
+    edges.extend(flow_edges(simulation));
+    edges
+}
+
+/// Parts of faces of joints that water which flows presses on.
+fn flow_edges(simulation: &Simulation) -> Vec<WetEdge> {
+    let (model, state) = (simulation.model(), simulation.state());
+    let (Some(net), Some(seepage)) = (&model.flow, &state.seepage) else { return Vec::new() };
+    let (boundary, weight) = (&model.boundary, water_weight(simulation));
+    let positions = simulation.positions();
+    let there = |piece: &FlowPiece| piece.edges.iter().all(|&edge| !state.removed[boundary.block[edge]]);
+    let faces = |piece: &FlowPiece| {
+        let unknowns = piece.nodes.map(|node| seepage.unknowns[node as usize]);
+        let heights = piece.nodes.map(|node| net.places[node as usize].y);
+        let part = wet(unknowns, heights);
+        let face = |side: usize, Wet { span, heads }: Wet| {
+            let (edge, [from, to]) = (piece.edges[side], piece.spans[side]);
+            let [a, b] = [edge, boundary.after(edge)].map(|k| positions[k]);
+            let ends = span.map(|share| a + (b - a) * (from + (to - from) * share));
+            let (ends, heads) = if from <= to { (ends, heads) } else { ([ends[1], ends[0]], [heads[1], heads[0]]) };
+            WetEdge { ends, block: model.labels[boundary.block[edge]], pressure: heads.map(|head| weight * head) }
+        };
+        part.map(|part| [0, 1].map(|side| face(side, part))).into_iter().flatten()
+    };
+    let open = net.pieces.iter().zip(&seepage.conducts).filter(|(piece, conducts)| **conducts && there(piece));
+    open.flat_map(|(piece, _)| faces(piece)).collect()
+}
+
+/// All edges of the boundary that still water reaches.
+fn still_edges(simulation: &Simulation) -> Vec<WetEdge> {
     let (model, state) = (simulation.model(), simulation.state());
     let Some(water) = &model.water else { return Vec::new() };
     let weight = water_weight(simulation);

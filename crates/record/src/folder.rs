@@ -8,6 +8,8 @@ use enmm_io::files::{at_path, is_running, read_result, unfinished_name};
 use same_file::Handle;
 use serde_json::Value;
 
+use crate::flow::FLOW;
+
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
 /// Most attempts to take it.
@@ -17,7 +19,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 31] = [
+const FILES: [&str; 32] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
@@ -35,6 +37,7 @@ const FILES: [&str; 31] = [
     "failure.png",
     "failure.svg",
     "film.bin",
+    FLOW,
     "fos.csv",
     "fos.json",
     "fos.png",

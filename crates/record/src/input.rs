@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 pub fn input_record(loaded: &LoadedCase) -> Value {
     let LoadedCase { case, typed, .. } = loaded;
     let notes = case.report.entries().into_iter().filter_map(|(name, note)| Some((name.to_owned(), json!(note?))));
-    json!({
+    let mut record = json!({
         "report": notes.collect::<serde_json::Map<_, _>>(),
         "section": typed.section,
         "rocks": typed.rocks,
@@ -30,7 +30,12 @@ pub fn input_record(loaded: &LoadedCase) -> Value {
         "stages": typed.stages.iter().map(|stage| without(json!(stage), &["excavate_region"])).collect::<Vec<_>>(),
         "random": typed.random.iter().map(|row| json!(row)).collect::<Vec<_>>(),
         "case_text": loaded.source.text(),
-    })
+    });
+    if let Some(flow) = &typed.flow {
+        record["flow"] = json!(flow);
+        record["heads"] = typed.heads.iter().map(|head| without(json!(head), &["edge"])).collect();
+    }
+    record
 }
 
 /// An object without some of its keys.

@@ -7,6 +7,7 @@ pub mod blocks;
 mod breaks;
 pub mod changes;
 pub mod film;
+mod flow;
 mod folder;
 pub mod history;
 mod input;

@@ -15,6 +15,7 @@ use enmm_report::{Axis, FILM, Note};
 use crate::blocks::write_blocks;
 use crate::breaks::SectionRecord;
 use crate::film::{Film, Opening, numbers};
+use crate::flow::{FLOW, FlowRecord, write_flow};
 use crate::history::HistoryWriter;
 use crate::input::input_record;
 use crate::motion::{FailureOfStage, PermanentMotion};
@@ -409,6 +410,10 @@ impl Recorder {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
         write_blocks(&self.directory.join("blocks.csv"), simulation)?;
+        let flows = FlowRecord::all(simulation);
+        if !flows.is_empty() {
+            write_flow(&self.directory.join(FLOW), &flows)?;
+        }
         if status != RunStatus::Interrupted {
             results::draw_end(simulation, &self.directory)?;
         }

@@ -18,6 +18,7 @@ use enmm_picture::{
 };
 use enmm_report::FILM;
 
+use crate::flow::FLOW;
 use crate::folder::{FRAMES, make_frames};
 use crate::rows::{self, Histories};
 use crate::vtu::PARTS;
@@ -42,11 +43,21 @@ pub fn has_run(directory: &Path) -> bool {
     TRACES.iter().any(|name| directory.join(name).exists())
 }
 
-/// Removes the frames and the pictures of stages of an earlier run in the directory.
+/// Removes the frames, the pictures of stages and the flow of an earlier run in the directory.
 pub fn clear(directory: &Path) -> io::Result<()> {
     stage_pictures(directory)?.iter().try_for_each(|picture| fs::remove_file(picture).map_err(at_path(picture)))?;
+    remove_flow(directory)?;
     make_frames(directory)?;
     frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
+}
+
+/// Removes the flow in joints of an earlier run, which a case without such water would leave.
+fn remove_flow(directory: &Path) -> io::Result<()> {
+    let path = directory.join(FLOW);
+    match fs::remove_file(&path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(at_path(&path)(error)),
+        _ => Ok(()),
+    }
 }
 
 /// Pictures of ends of stages in a directory, such as `stage1_joints.png`.

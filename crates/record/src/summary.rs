@@ -15,6 +15,7 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
+use crate::flow::FlowRecord;
 use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
@@ -99,6 +100,9 @@ pub struct Summary {
     /// The blocks nearest to breaking, the worst first; empty of rock that does not break.
     #[serde(skip_serializing_if = "<[SectionRecord]>::is_empty")]
     pub worst_sections: Vec<SectionRecord>,
+    /// Water that went through the joints in each stage.
+    #[serde(skip_serializing_if = "<[FlowRecord]>::is_empty")]
+    pub flow: Vec<FlowRecord>,
     /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
@@ -459,6 +463,7 @@ impl Summary {
             broken_joints: broken(state),
             breaks: BreakRecord::all(simulation),
             worst_sections: SectionRecord::worst(simulation),
+            flow: FlowRecord::all(simulation),
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             trace_ends: TraceEndRecord::all(simulation.built()),

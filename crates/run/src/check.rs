@@ -8,7 +8,7 @@ use enmm::geometry::Point;
 use enmm::model::assemble::{Breaking, Bridge, ignored_traces};
 use enmm::model::case::GroundMotion;
 use enmm::model::tables::Workspace;
-use enmm::model::{Simulation, State};
+use enmm::model::{FlowSurvey, Simulation, State};
 use enmm_stability::corners::weak_corners;
 
 use crate::rock_mass::{RockMass, rock_masses};
@@ -83,6 +83,9 @@ pub struct Check {
     /// Rock bridges that can break.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bridges: Vec<BridgeRecord>,
+    /// Joints in which water flows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow: Option<FlowSurvey>,
     /// What the build has changed in the drawing.
     pub notes: Vec<String>,
     /// Warnings for the user.
@@ -129,6 +132,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         rock_masses: rock_masses(simulation.case()),
         records: simulation.case().ground_motions(),
         bridges: built.bridges.iter().map(BridgeRecord::of).collect(),
+        flow: simulation.flow_survey(),
         notes: built.notes.iter().cloned().chain(corner_note(simulation)).collect(),
         warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
     }

@@ -18,6 +18,7 @@ mod kinematics;
 mod limit_analysis;
 mod rock_that_breaks;
 mod searches_begin_anywhere;
+mod seepage;
 mod slips_before_it_holds;
 mod soil_slope;
 mod support;

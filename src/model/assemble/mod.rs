@@ -4,6 +4,7 @@ mod bolts;
 mod bonds;
 mod cuts;
 mod ends;
+mod flow;
 mod geometry;
 mod integrators;
 mod joints;
@@ -23,6 +24,7 @@ use crate::contact::{
     Support,
 };
 use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
+use crate::flow::FlowNet;
 use crate::geometry::ends::EndDistances;
 use crate::geometry::{NodingReport, Point, Vector, polygon};
 use crate::mechanics::{
@@ -100,7 +102,7 @@ pub fn build(
     let (covers, outlines) = cover::cut(mesh, arrangement);
     let tolerance = places_tolerance(&noding);
     tell(BuildStage::Masses);
-    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines, before), tolerance, tell)?;
+    let (mut model, bolt_warnings) = model(case, &joints, (covers, &outlines, before, tolerance), tell)?;
     model.integrator =
         integrators.other(case, &model.covers, &model.rocks, &model.element_rock).map(OtherIntegrator::new);
     let bridges = sections::of_bridges(case, &joints, &mut model);
@@ -118,6 +120,7 @@ pub fn build(
     warnings.extend(bolt_warnings);
     warnings.extend(bonds::warnings(case, &model, &joints));
     warnings.extend(quiet::warning(case));
+    warnings.extend(flow::warnings(case, &model));
     warnings.extend(quiet::ringing(case));
     warnings.extend(warnings::of_values(case, &model, &positions));
     let (low, high) = polygon::bounds(&model.covers.polygons.points);
@@ -152,8 +155,7 @@ pub fn outlines(case: &Case) -> Result<Outlines, Invalid> {
 fn model(
     case: &Case,
     joints: &Joints,
-    (covers, outlines, before): (Covers, &Outlines, Option<&Boundary>),
-    tolerance: f64,
+    (covers, outlines, before, tolerance): (Covers, &Outlines, Option<&Boundary>, f64),
     tell: &mut dyn FnMut(BuildStage),
 ) -> Result<(Model, Vec<String>), Invalid> {
     let positions = Locator { covers: &covers, outlines, tolerance };
@@ -162,7 +164,7 @@ fn model(
     tell(BuildStage::Boundary);
     let boundary = Boundary::new(&covers, &keep_nodes(outlines, before, tolerance), &DetectionRule::default());
     let (bolts, bolt_warnings) = bolts::bolts(case, &positions)?;
-    let (loads, ports, water) = on_faces(case, &positions, &boundary, &quiets.quiets)?;
+    let OnFaces { loads, ports, water, flow } = on_faces(case, joints, &positions, &boundary, &quiets.quiets)?;
     let model = Model {
         chunks: Chunks::new(&covers, &element_rock, &pre_stresses(case, &covers), &averaging),
         averaging,
@@ -190,6 +192,7 @@ fn model(
         loads,
         ports,
         water,
+        flow,
         gravity: Vector::new(case.gravity.x, case.gravity.y),
         in_situ: in_situ(case),
         dt: internal_step(case, shortest_critical_dt(&covers, &rocks)),
@@ -224,17 +227,26 @@ fn held(
     Ok((fixities, supports, of_case, quiets))
 }
 
-/// Loads, ports and water on faces of the rock.
-type OnFaces = (Vec<Load>, Vec<Port>, Option<Water>);
+/// Loads, ports and water on faces of the rock and between them.
+struct OnFaces {
+    loads: Vec<Load>,
+    ports: Vec<Port>,
+    water: Option<Water>,
+    flow: Option<FlowNet>,
+}
 
 fn on_faces(
     case: &Case,
+    joints: &Joints,
     positions: &Locator,
     boundary: &Boundary,
     quiets: &[QuietBoundary],
 ) -> Result<OnFaces, Invalid> {
     let faces = ports::Faces { boundary, tolerance: positions.tolerance };
-    Ok((loads(case, positions, &faces)?, ports::ports(case, positions, &faces, quiets)?, ports::water(case, &faces)?))
+    let (loads, water) = (loads(case, positions, &faces)?, ports::water(case, &faces)?);
+    let ports = ports::ports(case, positions, &faces, quiets)?;
+    let flow = flow::net(case, joints, &faces, water.as_ref())?;
+    Ok(OnFaces { loads, ports, water, flow })
 }
 
 /// Shortest stable step (s) of all rocks.
@@ -500,6 +512,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         law_switch: LawId::all(model.laws.len()).collect(),
         damping: None,
         water_density: model.water_density(),
+        seepage: None,
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(model)),

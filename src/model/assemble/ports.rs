@@ -16,7 +16,8 @@ pub(super) struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    fn lies_on(&self, edge: EdgeId, [a, b]: [[f64; 2]; 2]) -> bool {
+    /// Whether both ends of an edge lie on a segment.
+    pub fn lies_on(&self, edge: EdgeId, [a, b]: [[f64; 2]; 2]) -> bool {
         let ends = [edge, self.boundary.after(edge)].map(|k| self.boundary.reference[k]);
         ends.iter().all(|&p| segment::distance(p, Point::from(a), Point::from(b)) <= self.tolerance)
     }
@@ -116,6 +117,13 @@ pub(super) fn ports(
     Ok(ports)
 }
 
+/// Segments of the outline beyond which there is rock: those that fixities, quiet boundaries and columns hold.
+pub(super) fn held_edges(case: &Case) -> Vec<[[f64; 2]; 2]> {
+    let quiet = case.quiets.iter().map(|quiet| quiet.edge);
+    let beside = case.free_fields.iter().map(|side| side.edge);
+    case.fixes.iter().filter_map(|fix| fix.edge).chain(quiet).chain(beside).collect()
+}
+
 /// The water of a case with the edges that it reaches.
 pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid> {
     let Some(water) = &case.water else { return Ok(None) };
@@ -128,10 +136,7 @@ pub(super) fn water(case: &Case, faces: &Faces) -> Result<Option<Water>, Invalid
             }
         }
         None => {
-            let quiet = case.quiets.iter().map(|quiet| quiet.edge);
-            let beside = case.free_fields.iter().map(|side| side.edge);
-            let held: Vec<[[f64; 2]; 2]> =
-                case.fixes.iter().filter_map(|fix| fix.edge).chain(quiet).chain(beside).collect();
+            let held = held_edges(case);
             for (edge, wet) in faces.boundary.edges().zip(&mut wet) {
                 let outer = faces.boundary.trace[edge].is_none();
                 *wet = outer && !held.iter().any(|&segment| faces.lies_on(edge, segment));

@@ -9,6 +9,8 @@ pub(crate) mod unit;
 pub use range::{Plain, Range, rounded};
 pub use unit::Unit;
 
+use std::collections::BTreeMap;
+
 use crate::key::{Check, Key, fail};
 
 /// Defines a table of a case. A key may have a rule behind its type: `pub size: f64 => LENGTH.label("Size")`. A
@@ -259,6 +261,12 @@ impl<T: Numbers> Numbers for Vec<T> {
     }
 }
 
+impl<T: Numbers> Numbers for BTreeMap<String, T> {
+    fn first(&self, wrong: &dyn Fn(f64) -> bool) -> Option<(Vec<usize>, f64)> {
+        self.values().find_map(|number| number.first(wrong))
+    }
+}
+
 impl<T: Numbers, const N: usize> Numbers for [T; N] {
     fn first(&self, wrong: &dyn Fn(f64) -> bool) -> Option<(Vec<usize>, f64)> {
         first_of(self, wrong)
@@ -291,8 +299,10 @@ impl schemars::transform::Transform for Described {
                 property["examples"] = [example].as_slice().into();
             }
             let mut number = property;
-            while number.get("items").is_some() {
-                number = &mut number["items"];
+            while let Some(inner) =
+                ["items", "additionalProperties"].into_iter().find(|name| number.get(name).is_some())
+            {
+                number = &mut number[inner];
             }
             if let Some(number) = number.as_object_mut() {
                 rule.range.describe(number);

@@ -30,6 +30,7 @@ pub const SPEED: Unit = unit("m/s", &[("cm/s", 1e-2), ("mm/s", 1e-3)]);
 pub const TURN: Unit = unit("rad/s", &[]);
 pub const SECOND: Unit = unit("s", &[("ms", 1e-3), ("hours", 3600.0)]);
 pub const ENERGY: Unit = unit("J/m²", &[("kJ/m²", 1e3), ("N/mm", 1e3)]);
+pub const VISCOSITY: Unit = unit("Pa s", &[("mPa s", 1e-3)]);
 pub const BYTE: Unit = unit("bytes", &[]);
 /// Stiffness of a support: of one at a point, or of one along an edge.
 pub const SUPPORT: Unit = unit("N/m per metre or Pa/m", &[]);

@@ -188,6 +188,12 @@ impl<'a> Names<'a> {
         Self { what: "fixity", remedy: "add [[fix]] with this `name`", known }
     }
 
+    /// Returns the heads of a case.
+    pub fn of_heads(case: &'a Case) -> Self {
+        let known = case.heads.iter().map(|head| head.name.as_str()).collect();
+        Self { what: "head", remedy: "add [[head]] with this `name`", known }
+    }
+
     /// Returns the dynamic stages of a case.
     pub fn of_dynamic_stages(case: &'a Case) -> Self {
         let dynamic = case.stages.iter().filter(|stage| stage.kind == StageKind::Dynamic);

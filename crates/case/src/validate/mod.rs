@@ -4,6 +4,7 @@
 pub(crate) mod bolts;
 pub(crate) mod checks;
 mod drawing;
+pub(crate) mod flow;
 mod fracture;
 pub(crate) mod ground;
 mod joint_sets;
@@ -65,6 +66,7 @@ impl Case {
         if let Some(water) = &self.water {
             ports::validate_water(&root.field("water"), water)?;
         }
+        flow::validate_flow(&root, self)?;
         ports::validate_ports(&root.field("port"), self)?;
         if let Some(notes) = &self.fmu {
             fmu_notes(&root.field("fmu"), notes)?;

@@ -65,15 +65,7 @@ pub fn validate_ports(key: &Key, case: &Case) -> Check {
 
 fn validate_port(key: &Key, port: &Port) -> Check {
     port.check(key)?;
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    if !port.name.starts_with(|c: char| c.is_ascii_alphabetic()) || !port.name.chars().all(is_word) {
-        let message = format!(
-            "is {:?}, must begin with a letter and go on with letters, digits and underscores: it becomes part of the \
-             names of variables; rename the port",
-            port.name
-        );
-        return fail(&key.field("name"), message);
-    }
+    word(&key.field("name"), &port.name, "port")?;
     let places = [
         ("block", port.block.is_some()),
         ("boundary", port.boundary.is_some()),
@@ -85,6 +77,22 @@ fn validate_port(key: &Key, port: &Port) -> Check {
     port.boundary.as_ref().map_or(Ok(()), |edge| segment(&key.field("boundary"), edge))?;
     port.joint.as_ref().map_or(Ok(()), |edge| segment(&key.field("joint"), edge))?;
     validate_start(key, port, place)
+}
+
+/// Checks that a name can be part of names of variables.
+///
+/// # Errors
+/// It has other signs than letters, digits and underscores.
+pub fn word(key: &Key, name: &str, what: &str) -> Check {
+    let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(is_of_word) {
+        return Ok(());
+    }
+    let message = format!(
+        "is {name:?}, must begin with a letter and go on with letters, digits and underscores: it becomes part of the \
+         names of variables; rename the {what}"
+    );
+    fail(key, message)
 }
 
 /// Checks that the quiet boundary or the fixity of a port is there, and can be moved.

@@ -1,7 +1,7 @@
 //! Checks of stages: what fits the kind, and references to laws and fixities.
 
 use super::checks::{Names, each, points, region, unique};
-use super::{joints, ports};
+use super::{flow, joints, ports};
 use crate::key::{Check, Key, fail};
 use crate::keys::{Range, Rule};
 use crate::{Case, Integrator, JointLaw, LawChange, LawSwitch, Stage, StageCut, StageKind};
@@ -27,6 +27,7 @@ pub fn validate_stages(key: &Key, case: &Case) -> Check {
         validate_laws(&key, stage, case, &laws)?;
         validate_fixities(&key, stage, &fixes)?;
         validate_water(&key.field("water"), i, stage, case)?;
+        flow::validate_heads(&key.field("heads"), i, stage, case)?;
     }
     unique(key, "stage", case.stages.iter().map(|stage| Some(stage.name.as_str())))
 }

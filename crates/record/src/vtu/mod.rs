@@ -260,7 +260,7 @@ impl Part {
             (true, Self::Joints),
             (!model.bolts.is_empty(), Self::Bolts),
             (!model.supports.is_empty(), Self::Supports),
-            (model.water.is_some(), Self::Water),
+            (model.water.is_some() || model.flow.is_some(), Self::Water),
         ];
         all.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
     }

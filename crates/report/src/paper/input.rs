@@ -1,7 +1,7 @@
 //! Input: section, rock, joints, water, loads, bolts, stages.
 
 use enmm_case::keys::Rule;
-use enmm_case::{Bolt, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, Rock, RockFracture, Section, Water};
+use enmm_case::{Bolt, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, Rock, RockFracture, Section, Water};
 use serde_json::Value;
 
 use super::number::{Digits, Number, length, plain, prefixed, steel_area};
@@ -30,7 +30,8 @@ pub fn input_chapter(records: &Records) -> String {
         + &chapter("Rock and joints", &[rocks(input), laws(input), sets(input), joints(input)].concat())
         + &chapter(
             "Stress, water and loads",
-            &[in_situ(input), water(input), drawdowns(input), loads(input), motions(input)].concat(),
+            &[in_situ(input), water(input), drawdowns(input), flow(input), heads(input), loads(input), motions(input)]
+                .concat(),
         )
         + &chapter("Bolts as designed", &bolts(input))
         + &chapter("Stages as planned", &stages(input))
@@ -131,6 +132,7 @@ fn water(input: &Value) -> String {
     let water = &input["water"];
     let full = match water["joints"].as_bool() {
         Some(true) => "full below the water table".into(),
+        Some(false) if input["flow"].is_object() => "with the pressure of the flow".into(),
         Some(false) => "dry".into(),
         None => Cell::Empty,
     };
@@ -147,6 +149,23 @@ fn drawdowns(input: &Value) -> String {
     let stages = entries(&input["stages"]).iter().filter(|stage| stage["water"].is_object());
     let rows: Vec<Vec<Cell>> = stages.map(row).collect();
     part("Water in later stages", &table(&["Stage", "Level", "Water table"], &rows))
+}
+
+fn flow(input: &Value) -> String {
+    part("Flow in joints", &facts(&keys(Flow::KEYS, &input["flow"])))
+}
+
+/// Heads at the start and in later stages.
+fn heads(input: &Value) -> String {
+    let row = |name: &str, stage: &str, level: &Value| -> Vec<Cell> {
+        vec![name.into(), stage.into(), length(level, Typed).into()]
+    };
+    let heads = entries(&input["heads"]).iter();
+    let mut rows: Vec<Vec<Cell>> = heads.map(|head| row(text(&head["name"]), "start", &head["level"])).collect();
+    for stage in entries(&input["stages"]) {
+        rows.extend(named(&stage["heads"]).map(|(name, level)| row(name, text(&stage["name"]), level)));
+    }
+    part("Heads in joints", &table(&["Head", "Stage", "Level"], &rows))
 }
 
 /// Points as `(x, y)` in metres.

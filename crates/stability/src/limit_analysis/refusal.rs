@@ -77,6 +77,19 @@ fn refuse_yielding(case: &Case) -> Result<(), Invalid> {
     Ok(())
 }
 
+/// Refuses water that flows in joints, whose pressure in the pores of rock that yields is not known.
+///
+/// # Errors
+/// The case has such water.
+pub fn refuse_flow(case: &Case) -> Result<(), Invalid> {
+    if case.flow.is_none() {
+        return Ok(());
+    }
+    let message = "finds the pressure in joints alone, but the bracket of rock that yields needs that in its pores: \
+                   give the water by `[water] table`, or use `enmm fos`";
+    Err(refused(Key::root().field("flow"), message))
+}
+
 fn refuse_motion(case: &Case) -> Result<(), Invalid> {
     let root = Key::root();
     let lists = [

@@ -98,6 +98,11 @@ impl<'a> Schema<'a> {
         if words.is_empty() { self.expected().to_string() } else { words.join(", or ") }
     }
 
+    /// Whether it is that of a table.
+    pub fn is_table(&self) -> bool {
+        self.kind() == "object"
+    }
+
     fn at(&self, node: &'a Value) -> Self {
         Self { root: self.root, node }
     }
@@ -173,7 +178,7 @@ pub fn example(key: &Key, schema: &Schema) -> String {
     let header = without_indices(key.as_str());
     let section = match schema.expected() {
         Expected::Table(fields) if fields.are_free() => {
-            fields.get("NAME").map(|item| (format!("[{header}.NAME]"), item))
+            fields.get("NAME").filter(Schema::is_table).map(|item| (format!("[{header}.NAME]"), item))
         }
         Expected::Table(_) => Some((format!("[{header}]"), *schema)),
         Expected::Array { items, .. } if items.kind() == "object" => Some((format!("[[{header}]]"), items)),
@@ -202,7 +207,10 @@ pub fn literal(schema: &Schema) -> String {
         return number(example);
     }
     match schema.expected() {
-        Expected::Table(_) => "{ }".to_string(),
+        Expected::Table(fields) => {
+            let item = fields.get("NAME").filter(|item| fields.are_free() && !item.is_table());
+            item.map_or("{ }".to_string(), |item| format!("{{ NAME = {} }}", literal(&item)))
+        }
         Expected::Array { items, length } => format!("[{}]", vec![literal(&items); length.unwrap_or(1)].join(", ")),
         Expected::Number => "1.0".to_string(),
         Expected::Integer(_) => "1".to_string(),

@@ -94,7 +94,7 @@ impl Reader<'_> {
             let child = key.field(name.get_ref());
             self.lines.insert(&child, self.starts.line(name.span().start));
             let Some(schema) = fields.get(name.get_ref()) else { return self.unknown(name.get_ref(), fields, &child) };
-            if fields.are_free() && !value.get_ref().is_table() {
+            if fields.are_free() && schema.is_table() && !value.get_ref().is_table() {
                 let remedy = example(key, &fields.schema());
                 return self.fail(&child, format!("is {}, must be a table; write {remedy}", shown(value.get_ref())));
             }

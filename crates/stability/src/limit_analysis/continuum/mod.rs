@@ -115,6 +115,7 @@ struct Ground {
 /// # Errors
 /// A case that cannot be built, that holds what cannot be treated, or whose program is not solved.
 pub fn bracket(case: &Case, triangles: usize) -> Result<Bracket, BoundError> {
+    refusal::refuse_flow(case)?;
     let (simulation, mut warnings) = refusal::staged_rock(case)?;
     let ground = Ground::new(simulation, case)?;
     let found = ground.upper(triangles)?;

@@ -1,0 +1,45 @@
+//! Claim: a run tells the water that goes through joints in each stage, in `flow.csv` and its summary, and one without
+//! such water leaves no `flow.csv` of an earlier run.
+
+use enmm::model::case::Pictures;
+use enmm_io::LoadedCase;
+use enmm_run::{RunOptions, run};
+
+use crate::quiet_run::example;
+
+/// Transmissivity (m²/s) of 0.1 mm: γe³/12μ. Half of the plane has that, half an eighth of it, below a head of 28 m.
+#[test]
+fn a_run_tells_the_flow_of_its_stages() {
+    let mut case = example("../flow/seepage_slide.toml");
+    (case.output.frames, case.output.pictures) = (true, Pictures::Usual(false));
+    case.stages[0].duration = 0.02;
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = RunOptions { directory: folder.path().join("run"), ..RunOptions::default() };
+    let loaded = LoadedCase::of(case.clone(), "case").expect("a case");
+    let summary = run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    let half = 0.5 * 32.8474042_f64.hypot(23.0);
+    let exact = 9810.0 * 1e-12 / (12.0 * 1e-3) * 28.0 / (9.0 * half);
+    let told: Vec<_> = summary.flow.iter().map(|row| (&*row.stage, &*row.name, row.enters, row.leaves)).collect();
+    assert_eq!(told.len(), 3, "{told:?}");
+    let near = |found: f64, exact: f64| assert!((found - exact).abs() <= 1e-9 * exact.abs(), "{found} {exact}");
+    for ((stage, name, enters, leaves), (own, exact)) in
+        told.into_iter().zip([("crack", [exact, 0.0]), ("reservoir", [0.0; 2]), ("air", [0.0, exact])])
+    {
+        assert_eq!((stage, name), ("gravity", own));
+        near(enters, exact[0]);
+        near(leaves, exact[1]);
+    }
+    let path = options.directory.join("flow.csv");
+    let text = std::fs::read_to_string(&path).expect("flow.csv");
+    let row: Vec<&str> = text.lines().nth(1).expect("a row").split(',').collect();
+    assert_eq!(row[..2], ["gravity", "crack"]);
+    near(row[2].parse().expect("a number"), exact);
+    near(row[4].parse().expect("a number"), exact * 6e4);
+    let wet = std::fs::read_dir(options.directory.join("frames")).expect("frames").filter_map(Result::ok);
+    assert!(wet.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with("water")));
+    (case.flow, case.heads) = (None, Vec::new());
+    case.joint_laws.values_mut().for_each(|law| law.aperture = None);
+    let loaded = LoadedCase::of(case, "case").expect("a case");
+    let dry = run(&loaded, &options, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(dry.flow.is_empty() && !path.exists());
+}

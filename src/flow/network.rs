@@ -1,0 +1,123 @@
+//! The net of joints of a model as it was built: a function of the case alone.
+
+use enmm_seepage::{Net, Refused, law};
+
+use crate::contact::{Boundary, EdgeId, Facing, Facings, LawId};
+use crate::geometry::Point;
+
+use super::nodes::Nodes;
+
+/// Place outside of the rock at a node of the net.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcrop {
+    /// Nothing that water reaches: the node lies within the rock, or where no water goes through.
+    #[default]
+    None,
+    /// Air.
+    Air,
+    /// The reservoir where its surface is above the node, else air.
+    Reservoir,
+}
+
+/// A head that is held at nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldHead {
+    /// Name.
+    pub name: String,
+    /// Its nodes, in their order.
+    pub nodes: Vec<u32>,
+    /// Level (m) at the start of each stage.
+    pub levels: Vec<f64>,
+}
+
+/// A piece of joint as a pipe between two nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlowPiece {
+    /// Edges of the boundary that face each other.
+    pub edges: [EdgeId; 2],
+    /// Shares of the way along each edge at the first and at the second node.
+    pub spans: [[f64; 2]; 2],
+    /// Nodes at its ends.
+    pub nodes: [u32; 2],
+    /// Law of the case, before stages switch it.
+    pub law: LawId,
+    /// Length (m).
+    pub length: f64,
+}
+
+/// Joints that conduct water.
+#[derive(Debug, Clone)]
+pub struct FlowNet {
+    /// Pieces of joint, which are the pipes of the net.
+    pub pieces: Vec<FlowPiece>,
+    /// Places of the nodes (m).
+    pub places: Vec<Point>,
+    /// Place outside of the rock at each node.
+    pub outcrops: Vec<Outcrop>,
+    /// Heads that are held.
+    pub heads: Vec<HeldHead>,
+    /// Aperture (m) at the start by law; 0 for joints that do not conduct.
+    pub apertures: Vec<f64>,
+    /// Least and greatest aperture (m) of joints that conduct.
+    pub range: [f64; 2],
+    /// Dynamic viscosity (Pa s).
+    pub viscosity: f64,
+    /// Density of the water at the start (kg/m³).
+    pub density: f64,
+    /// Nodes and pipes, with the order in which systems are solved.
+    pub net: Net,
+}
+
+impl FlowNet {
+    /// Finds nodes and pieces; `law` gives the law of an edge, `outside` the place that an edge of the outline meets.
+    /// Apertures and heads are still to be filled in.
+    ///
+    /// # Errors
+    /// More pieces than a net can have.
+    pub fn new(
+        boundary: &Boundary,
+        facings: &Facings,
+        law: impl Fn(EdgeId) -> LawId,
+        outside: impl Fn(EdgeId) -> Outcrop,
+    ) -> Result<Self, Refused> {
+        let nodes = Nodes::of(facings.pieces.iter().flat_map(|piece| piece.ends), &facings.same);
+        let piece = |facing: &Facing| {
+            let [a, b] = facing.ends.map(|end| nodes.at(end));
+            let nodes = [a?, b?];
+            let Facing { edges, spans, ends, .. } = *facing;
+            // Both ends are one where the piece is as short as round-off.
+            let length = (ends[1] - ends[0]).norm();
+            (nodes[0] != nodes[1]).then_some(FlowPiece { edges, spans, nodes, law: law(edges[0]), length })
+        };
+        let pieces: Vec<FlowPiece> = facings.pieces.iter().filter_map(piece).collect();
+        let mut outcrops = vec![Outcrop::None; nodes.places.len()];
+        for edge in boundary.edges().filter(|&edge| boundary.trace[edge].is_none()) {
+            let found = [edge, boundary.after(edge)].map(|point| nodes.at(boundary.reference[point]));
+            for node in found.into_iter().flatten() {
+                let outcrop = &mut outcrops[node as usize];
+                *outcrop = (*outcrop).max(outside(edge));
+            }
+        }
+        let heights: Vec<f64> = nodes.places.iter().map(|place| place.y).collect();
+        let pipes: Vec<[u32; 2]> = pieces.iter().map(|piece| piece.nodes).collect();
+        let net = Net::new(&heights, &pipes)?;
+        let places = nodes.places;
+        let (heads, apertures) = (Vec::new(), Vec::new());
+        let (range, viscosity, density) = ([0.0; 2], 1.0, 0.0);
+        Ok(Self { pieces, places, outcrops, heads, apertures, range, viscosity, density, net })
+    }
+
+    /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not
+    /// conduct (Eq. 96). Closure that is the solver's own does not count.
+    pub fn aperture(&self, law: LawId, opening: f64, closes: bool) -> f64 {
+        let start = self.apertures[law.index()];
+        let opening = if closes { opening } else { opening.max(0.0) };
+        if start > 0.0 { (start + opening).clamp(self.range[0], self.range[1]) } else { 0.0 }
+    }
+
+    /// Conductance (m²/s per m of head) of a piece with these apertures (m) at its ends, in water of a unit weight
+    /// (N/m³; Eq. 95).
+    pub fn conductance(&self, piece: &FlowPiece, [e0, e1]: [f64; 2], unit_weight: f64) -> f64 {
+        law::conductance(e0, e1, piece.length, unit_weight, self.viscosity)
+    }
+}

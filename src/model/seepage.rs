@@ -1,0 +1,215 @@
+//! Steady flow in the joints at the start of a static stage, and what is known of it.
+
+use enmm_seepage::{Condition, Failure, Unsolved};
+use serde::Serialize;
+
+use crate::contact::EdgeId;
+use crate::cover::BlockId;
+use crate::flow::{FlowNet, FlowPiece, Inlet, Outcrop, Outside};
+use crate::geometry::{Point, Vector};
+use crate::state::{FlowBalance, Model, Seepage, State};
+
+use super::Simulation;
+use super::bonds::{BondState, bond_states};
+use super::case::Invalid;
+
+impl Simulation {
+    /// Finds the steady flow in the joints as they are at the start of a stage, if water flows in them.
+    ///
+    /// # Errors
+    /// No flow has been found.
+    pub(super) fn find_flow(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
+        let (model, state) = (&self.built.model, &self.state);
+        let Some(net) = &model.flow else { return Ok(()) };
+        let seen = Seen { model, state, net, stage, start };
+        self.state.seepage = Some(seen.steady().map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
+        Ok(())
+    }
+}
+
+/// Size of the net of joints in which water flows, and what of it water reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FlowSurvey {
+    /// Nodes: ends and crossings of pieces of joint.
+    pub nodes: usize,
+    /// Pieces of joint that conduct.
+    pub pieces: usize,
+    /// Nodes that have a head, that of the reservoir included.
+    pub heads: usize,
+    /// Nodes that are open to the air.
+    pub outcrops: usize,
+    /// Nodes within the rock at which a single piece ends.
+    pub dead_ends: usize,
+    /// Length of all pieces that conduct (m).
+    pub length: f64,
+    /// Length of those that no head and no outcrop reaches (m): they are dry.
+    pub isolated: f64,
+    /// Least and greatest transmissivity (m²/s) of pieces that conduct.
+    pub transmissivity: [f64; 2],
+}
+
+impl Simulation {
+    /// The net of joints now, if water flows in them.
+    pub fn flow_survey(&self) -> Option<FlowSurvey> {
+        let (model, state) = (&self.built.model, &self.state);
+        let net = model.flow.as_ref()?;
+        Some(Seen { model, state, net, stage: state.stage as usize, start: self.time() }.survey())
+    }
+}
+
+fn told(net: &FlowNet, stage: &str, failure: &Failure) -> Invalid {
+    let place = match failure {
+        Failure::Unsolved(Unsolved { node, .. }) => net.places.get(*node),
+        Failure::Refused(_) => None,
+    };
+    let at = place.map_or(String::new(), |p| format!(" near ({:.6}, {:.6}) m", p.x, p.y));
+    let message = format!(
+        "in stage {stage:?}{at}: {failure}; let apertures differ less, or close joints to water there by `aperture = 0`"
+    );
+    Invalid { key: "flow".to_owned(), message }
+}
+
+/// A model at the start of a stage, whose changes have been made.
+struct Seen<'a> {
+    model: &'a Model,
+    state: &'a State,
+    net: &'a FlowNet,
+    stage: usize,
+    start: f64,
+}
+
+impl Seen<'_> {
+    fn steady(&self) -> Result<Seepage, Failure> {
+        let conductance = self.conductance();
+        let flooded = self.flooded();
+        let conditions = self.conditions(&flooded);
+        let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
+        let flow = self.net.net.steady(&conductance, &at_nodes)?;
+        let (stage, sums) = (self.stage as u32, self.net.sums(&conditions, &flow));
+        let mut balances = self.state.seepage.as_ref().map_or_else(Vec::new, |seepage| seepage.balances.clone());
+        balances.push(FlowBalance { stage, sums, residual: flow.residual });
+        let conducts = conductance.iter().map(|g| *g > 0.0).collect();
+        Ok(Seepage { unknowns: flow.u, conducts, flooded, balances })
+    }
+
+    fn survey(&self) -> FlowSurvey {
+        let conductance = self.conductance();
+        let conditions = self.conditions(&self.flooded());
+        let labels = self.net.net.pieces(&conductance);
+        let (mut ends, mut fed) = (vec![0_u32; labels.len()], vec![false; labels.len()]);
+        let open = || self.net.pieces.iter().zip(&conductance).filter(|(_, g)| **g > 0.0);
+        open().for_each(|(piece, _)| piece.nodes.iter().for_each(|&node| ends[node as usize] += 1));
+        for (label, _) in labels.iter().zip(&conditions).filter(|(_, condition)| condition.1.is_some()) {
+            fed[*label as usize] = true;
+        }
+        let nodes = || conditions.iter().zip(&ends).filter(|(_, ends)| **ends > 0);
+        let count = |is: fn(&Condition) -> bool| nodes().filter(|(condition, _)| is(&condition.0)).count();
+        let lengths = |all: bool| {
+            let is_isolated = |piece: &FlowPiece| !fed[labels[piece.nodes[0] as usize] as usize];
+            let these = open().filter(|(piece, _)| all || is_isolated(piece));
+            these.map(|(piece, _)| piece.length).fold(0.0, |sum, length| sum + length)
+        };
+        let each = || open().map(|(piece, g)| g * piece.length);
+        FlowSurvey {
+            nodes: nodes().count(),
+            pieces: open().count(),
+            heads: count(|condition| matches!(condition, Condition::Held { .. })),
+            outcrops: count(|condition| matches!(condition, Condition::Air)),
+            dead_ends: nodes().filter(|(condition, ends)| **ends == 1 && condition.1.is_none()).count(),
+            length: lengths(true),
+            isolated: lengths(false),
+            transmissivity: [each().fold(f64::INFINITY, f64::min), each().fold(0.0, f64::max)],
+        }
+    }
+
+    /// Conductance (m²/s per m of head) of each piece; 0 where blocks are gone, bonds hold or the law is closed.
+    fn conductance(&self) -> Vec<f64> {
+        let drive = &self.state.drive;
+        let weight = self.state.water_density * drive.gravity(drive.share(self.start)).norm();
+        let bonds = bond_states(self.model, self.state);
+        let conducts = |piece: &FlowPiece| {
+            let holds = piece.edges.iter().any(|edge| bonds[edge.index()] == BondState::Holds);
+            let is_there = piece.edges.iter().all(|&edge| !self.is_gone(edge));
+            !holds && is_there && self.net.apertures[self.state.law_switch[piece.law].index()] > 0.0
+        };
+        let of_piece = |piece: &FlowPiece| match conducts(piece) {
+            true => self.net.conductance(piece, self.apertures(piece), weight),
+            false => 0.0,
+        };
+        self.net.pieces.iter().map(of_piece).collect()
+    }
+
+    /// Condition at each node, and which inlet it is.
+    fn conditions(&self, flooded: &[bool]) -> Vec<(Condition, Option<Inlet>)> {
+        let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
+        self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths })
+    }
+
+    fn block(&self, edge: EdgeId) -> BlockId {
+        self.model.boundary.block[edge]
+    }
+
+    fn is_gone(&self, edge: EdgeId) -> bool {
+        self.state.removed[self.block(edge)]
+    }
+
+    /// Apertures (m) at both ends of a piece, by what it has opened since the start.
+    fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
+        let (boundary, law) = (&self.model.boundary, self.state.law_switch[piece.law]);
+        let stars = &self.model.covers.star_position;
+        let moved = |point: EdgeId| boundary.sample(point, &self.state.displacement);
+        let place = |point: EdgeId| boundary.sample(point, stars) + moved(point);
+        let [a, b] = [piece.edges[0], boundary.after(piece.edges[0])].map(place);
+        let along = (b - a) / (b - a).norm().max(f64::MIN_POSITIVE);
+        let outward = Vector::new(along.y, -along.x);
+        let moved_at = |side: usize, end: usize| {
+            let (edge, share) = (piece.edges[side], piece.spans[side][end]);
+            moved(edge) * (1.0 - share) + moved(boundary.after(edge)) * share
+        };
+        let closes = !self.model.laws[law].penalty[0];
+        [0, 1].map(|end| self.net.aperture(law, (moved_at(1, end) - moved_at(0, end)).dot(&outward), closes))
+    }
+
+    /// Depth (m) of a position below the surface of the reservoir; negative where there is none.
+    fn depth(&self, at: Point) -> f64 {
+        let drive = &self.state.drive;
+        let level = drive.water_level(drive.share(self.start));
+        self.model.water.as_ref().map_or(-1.0, |water| water.surfaces[self.stage].depth(level, at))
+    }
+
+    /// Blocks that have been dug out and filled by the reservoir: those with a face in it, and those beside them.
+    fn flooded(&self) -> Vec<bool> {
+        let (boundary, removed) = (&self.model.boundary, &self.state.removed);
+        let mut flooded = vec![false; removed.len()];
+        let deep = |edge: EdgeId| [edge, boundary.after(edge)].iter().any(|&k| self.depth(boundary.reference[k]) > 0.0);
+        let of_water = self.model.water.iter().flat_map(|water| &water.edges);
+        of_water.filter(|&&edge| self.is_gone(edge) && deep(edge)).for_each(|&edge| flooded[self.block(edge)] = true);
+        let both_gone = |piece: &&FlowPiece| piece.edges.iter().all(|&edge| self.is_gone(edge));
+        loop {
+            let mut spreads = false;
+            for piece in self.net.pieces.iter().filter(both_gone) {
+                let [a, b] = piece.edges.map(|edge| self.block(edge));
+                if flooded[a] != flooded[b] {
+                    (flooded[a], flooded[b], spreads) = (true, true, true);
+                }
+            }
+            if !spreads {
+                return flooded;
+            }
+        }
+    }
+
+    /// Air or water that has come to each node in the place of blocks that have been dug out.
+    fn dug(&self, flooded: &[bool]) -> Vec<Outcrop> {
+        let mut dug = vec![Outcrop::None; self.net.places.len()];
+        for piece in &self.net.pieces {
+            for block in piece.edges.map(|edge| self.block(edge)).into_iter().filter(|&b| self.state.removed[b]) {
+                let here = if flooded[block.index()] { Outcrop::Reservoir } else { Outcrop::Air };
+                for node in piece.nodes {
+                    dug[node as usize] = dug[node as usize].max(here);
+                }
+            }
+        }
+        dug
+    }
+}
