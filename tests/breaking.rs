@@ -55,7 +55,7 @@ fn an_overhang_has_the_stress_of_a_beam_at_its_root() {
         println!("h {size}, {angle}°: {:.8} of the strength at {ends:?}", share);
         assert!((share - 0.5).abs() < 1e-5, "{share}");
         assert!(ends.iter().all(|end| end[0].abs() < 1e-9), "{ends:?}");
-        // What files show of the block, and how it would fail.
+        // The share that files show, and the way in which the block would fail.
         let shown: Vec<f64> = bar.blocks().iter().map(|block| block.strength_share).collect();
         assert_eq!(shown, [share]);
         assert!(bar.block_quantities().any(|quantity| quantity.name == "strength_share"));

@@ -170,8 +170,8 @@ fn more_parts_than_the_case_allows_end_the_step_before_it_begins() {
 /// A stage parts the bar along a new line while a host drives the model.
 #[test]
 fn a_stage_that_cuts_has_the_same_bits_in_any_communication_steps() {
-    let stage = "[joint_law.smooth]\nfriction_deg = 20\n[[stage]]\nname = \"cut\"\nkind = \"dynamic\"\nduration = 0.0625\n\
-                 damping = 0\ncut = [{ points = [[1, 1.1], [1, -0.1]], law = \"smooth\" }]\n";
+    let stage = "[joint_law.smooth]\nfriction_deg = 20\n[[stage]]\nname = \"cut\"\nkind = \"dynamic\"\n\
+                 duration = 0.0625\ndamping = 0\ncut = [{ points = [[1, 1.1], [1, -0.1]], law = \"smooth\" }]\n";
     let text = BAR.replace("tension = 0.5e6", "tension = 5e6") + stage;
     let mut whole = host(&text);
     assert_eq!((whole.block_states().len(), whole.blocks_max()), (1, 5));

@@ -148,8 +148,8 @@ impl Simulation {
         field
     }
 
-    /// This model at this time with the sections cut that have broken in another since, which goes on from it: both have
-    /// the same blocks then, and can be compared.
+    /// This model at this time with the sections cut that have broken in another since, which goes on from it: both
+    /// have the same blocks then, and can be compared.
     #[must_use]
     pub fn with_breaks_of(&self, other: &Self) -> Self {
         let mut cut = self.clone();

@@ -66,9 +66,9 @@ fn a_plane_that_a_stage_cuts_has_the_factor_of_a_joint() {
 fn the_weaker_of_joint_and_rock_decides() {
     let text = |tension: f64| {
         format!(
-            "title = \"ledge\"\n[domain]\noutline = [[-4, -1], [8, -1], [8, 0], [0, 0], [0, 1], [2, 1], [2, 2], [-3, 2], \
-             [-3, 0], [-4, 0]]\n[mesh]\nsize = 0.5\norigin = [0.0137, 0.0071]\n[gravity]\nx = {:?}\ny = {:?}\n{}\
-             [joint_law.base]\nfriction_deg = 30\n[[joint]]\npoints = [[-3, 0], [0, 0]]\nlaw = \"base\"\n[[fix]]\n\
+            "title = \"ledge\"\n[domain]\noutline = [[-4, -1], [8, -1], [8, 0], [0, 0], [0, 1], [2, 1], [2, 2], \
+             [-3, 2], [-3, 0], [-4, 0]]\n[mesh]\nsize = 0.5\norigin = [0.0137, 0.0071]\n[gravity]\nx = {:?}\n\
+             y = {:?}\n{}[joint_law.base]\nfriction_deg = 30\n[[joint]]\npoints = [[-3, 0], [0, 0]]\nlaw = \"base\"\n[[fix]]\n\
              edge = [[-4, -1], [8, -1]]\n{REST}",
             0.2 * G,
             -G,

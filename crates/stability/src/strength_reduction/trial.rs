@@ -138,18 +138,16 @@ impl Base {
     }
 
     /// This start with the sections cut that have broken in a trial since, so that both have the same blocks.
-    fn with_breaks_of(&self, trial: &Simulation) -> Self {
+    fn with_breaks_of(&self, trial: &Simulation) -> Cow<'_, Self> {
+        if self.simulation.cuts().len() == trial.cuts().len() {
+            return Cow::Borrowed(self);
+        }
         let simulation = self.simulation.with_breaks_of(trial);
-        Self { free: free(&simulation), simulation, ..*self }
-    }
-
-    /// Whether a trial has broken no more sections than this start has.
-    fn has_blocks_of(&self, trial: &Simulation) -> bool {
-        self.simulation.cuts().len() == trial.cuts().len()
+        Cow::Owned(Self { free: free(&simulation), simulation, ..*self })
     }
 
     /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
-    fn positions(&self, simulation: &Simulation) -> Vec<(BlockId, Vector3<f64>)> {
+    fn positions(&self, simulation: &Simulation) -> Positions {
         let position = |b: BlockId| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
@@ -241,11 +239,7 @@ impl Base {
         let scales = self.scales.of(fall.map_or(0.0, |fall| fall.time), begun_as.geometry);
         let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
-        let mut base = Cow::Borrowed(self);
-        if !base.has_blocks_of(&simulation) {
-            base = Cow::Owned(self.with_breaks_of(&simulation));
-        }
-        let mut positions = base.positions(&simulation);
+        let mut blocks = Blocks::of(self, &simulation);
         let steps = simulation.steps_in(scales.window);
         let (mut first, mut residual) = (None, 0.0);
         let mut judged = None;
@@ -259,15 +253,8 @@ impl Base {
                 }
             };
             let first = *first.get_or_insert(last.ledger);
-            if !base.has_blocks_of(&simulation) {
-                positions = parts_of(&positions, base.simulation.model(), &simulation);
-                base = Cow::Owned(self.with_breaks_of(&simulation));
-            }
-            let before = std::mem::replace(&mut positions, base.positions(&simulation));
-            let few = base.few(&simulation);
-            let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
-            let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
-            let sample = base.sample(&simulation, &last, &first, way, &few);
+            let (way, few) = blocks.follow(&simulation);
+            let sample = blocks.base.sample(&simulation, &last, &first, way, &few);
             residual = open_since(fall.is_none().then_some(&first), &last.ledger);
             samples.push(Sample { time: simulation.time() - start, ..sample });
             judged = judge::judge(&samples, &scales);
@@ -285,8 +272,8 @@ impl Base {
             kinetic: end.kinetic,
             released: end.released,
             acceleration: judge::acceleration(&samples),
-            failing: base.failing(&simulation, verdict),
-            loose: base.loose(&simulation),
+            failing: blocks.base.failing(&simulation, verdict),
+            loose: blocks.base.loose(&simulation),
             // Slip that stretches bars of which none has yielded is elastic.
             is_far: end.displacement > self.far && (yields || !has_bars),
             bars_yield: yields,
@@ -301,8 +288,8 @@ impl Base {
     /// The way in which blocks have moved since the trial began; none where nothing fails.
     pub fn mechanism(&self, simulation: &Simulation, failing: &[FailingBlock]) -> Option<Mechanism> {
         let blocks: Vec<BlockId> = failing.iter().filter_map(|block| simulation.block_labelled(block.block)).collect();
-        let begun = self.simulation.with_breaks_of(simulation);
-        simulation.mechanism_since(&begun.state().displacement, &blocks)
+        let begun = &self.simulation;
+        simulation.mechanism_since(&simulation.after_breaks(begun.cuts().len(), &begun.state().displacement), &blocks)
     }
 
     /// The motion at the end of a window in which the fastest block has gone a way (m), without that of a few.
@@ -384,21 +371,47 @@ impl Base {
     }
 }
 
+/// Displacements (m) of blocks.
+type Positions = Vec<(BlockId, Vector3<f64>)>;
+
+/// Blocks of a trial from window to window, beside the same blocks of its start.
+struct Blocks<'a> {
+    /// The start as the trial began.
+    start: &'a Base,
+    /// The start with what has broken in the trial since.
+    base: Cow<'a, Base>,
+    /// Where the blocks have come to at the end of the last window.
+    positions: Positions,
+}
+
+impl<'a> Blocks<'a> {
+    fn of(start: &'a Base, trial: &Simulation) -> Self {
+        let base = start.with_breaks_of(trial);
+        Self { positions: base.positions(trial), start, base }
+    }
+
+    /// Takes up a window; the way (m) of the fastest block in it, without those too few to decide, and these.
+    fn follow(&mut self, trial: &Simulation) -> (f64, Vec<BlockId>) {
+        if self.base.simulation.cuts().len() != trial.cuts().len() {
+            self.positions = parts_of(&self.positions, self.base.simulation.model(), trial);
+            self.base = self.start.with_breaks_of(trial);
+        }
+        let before = std::mem::replace(&mut self.positions, self.base.positions(trial));
+        let few = self.base.few(trial);
+        let both = self.positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
+        (both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max), few)
+    }
+}
+
 /// Displacements of blocks of a model as those of their parts in a trial whose rock has broken since.
-fn parts_of(positions: &[(BlockId, Vector3<f64>)], model: &Model, trial: &Simulation) -> Vec<(BlockId, Vector3<f64>)> {
+fn parts_of(positions: &[(BlockId, Vector3<f64>)], model: &Model, trial: &Simulation) -> Positions {
     let of = |label: u32| positions.iter().find(|(block, _)| model.labels[*block] == label).map(|(_, moved)| *moved);
     let parent = |label: u32| trial.cuts().iter().find(|cut| cut.part == label).map(|cut| cut.block);
     let free = free(trial);
     let blocks = BlockId::all(free.len()).filter(|&block| free[block]);
     let whole = |block: BlockId| {
-        let mut label = Some(trial.model().labels[block]);
-        while let Some(own) = label {
-            if let Some(moved) = of(own) {
-                return moved;
-            }
-            label = parent(own);
-        }
-        Vector3::zeros()
+        let line = std::iter::successors(Some(trial.model().labels[block]), |&label| parent(label));
+        line.into_iter().find_map(of).unwrap_or_default()
     };
     blocks.map(|block| (block, whole(block))).collect()
 }
