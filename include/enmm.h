@@ -1633,8 +1633,8 @@ enmm_status enmm_get_monitor_state(struct enmm_model *model, uint32_t monitor, s
 
 /**
  * Returns the number of blocks, excavated ones included. It grows when rock breaks and when a stage parts blocks, and
- * falls only with a return to an earlier state; without `fracture` and cuts in the case it never changes. Ids of blocks
- * that are there do not change.
+ * falls only with a return to an earlier state; without `fracture` and cuts in the case it never changes. Blocks keep
+ * their ids.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */

@@ -68,8 +68,8 @@ fn the_weaker_of_joint_and_rock_decides() {
         format!(
             "title = \"ledge\"\n[domain]\noutline = [[-4, -1], [8, -1], [8, 0], [0, 0], [0, 1], [2, 1], [2, 2], \
              [-3, 2], [-3, 0], [-4, 0]]\n[mesh]\nsize = 0.5\norigin = [0.0137, 0.0071]\n[gravity]\nx = {:?}\n\
-             y = {:?}\n{}[joint_law.base]\nfriction_deg = 30\n[[joint]]\npoints = [[-3, 0], [0, 0]]\nlaw = \"base\"\n[[fix]]\n\
-             edge = [[-4, -1], [8, -1]]\n{REST}",
+             y = {:?}\n{}[joint_law.base]\nfriction_deg = 30\n[[joint]]\npoints = [[-3, 0], [0, 0]]\nlaw = \"base\"\n\
+             [[fix]]\nedge = [[-4, -1], [8, -1]]\n{REST}",
             0.2 * G,
             -G,
             rock(tension)
