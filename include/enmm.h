@@ -258,6 +258,39 @@ typedef int32_t enmm_event_kind;
 #endif // __cplusplus
 
 /**
+ * How a section of rock broke.
+ */
+enum enmm_section_failure
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Its outermost fibre had the tensile strength, by tension more than by bending.
+   */
+  ENMM_SECTION_OPENED = 0,
+  /**
+   * It had its strength in shear.
+   */
+  ENMM_SECTION_SLID = 1,
+  /**
+   * Its outermost fibre had the tensile strength, by bending more than by tension.
+   */
+  ENMM_SECTION_BENT = 2,
+  /**
+   * A core of its block had the tensile strength.
+   */
+  ENMM_SECTION_SPLIT = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum enmm_section_failure enmm_section_failure;
+#else
+typedef int32_t enmm_section_failure;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * Kind of a port.
  */
 enum enmm_port_type
@@ -903,6 +936,68 @@ typedef struct enmm_event {
 } enmm_event;
 
 /**
+ * A section of rock that has broken and is a joint since then.
+ */
+typedef struct enmm_cut {
+  /**
+   * Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+   */
+  size_t struct_size;
+  /**
+   * Block that broke; its part with the point of a port, or else with its reference point, keeps the id.
+   */
+  uint32_t block;
+  /**
+   * Id of the part that is new.
+   */
+  uint32_t part;
+  /**
+   * How it broke.
+   */
+  enmm_section_failure failure;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+  /**
+   * End of the internal step in which it broke (s), as enmm_get_time counts.
+   */
+  double time;
+  /**
+   * First end in the reference configuration, x (m).
+   */
+  double first_x;
+  /**
+   * First end, y up (m).
+   */
+  double first_y;
+  /**
+   * Second end, x (m).
+   */
+  double second_x;
+  /**
+   * Second end, y up (m).
+   */
+  double second_y;
+  /**
+   * Share of its strength that it carried, 1 or a little more.
+   */
+  double share;
+  /**
+   * Normal force that it carried (N/m, tension positive).
+   */
+  double normal_force;
+  /**
+   * Shear force that it carried (N/m).
+   */
+  double shear_force;
+  /**
+   * Bending moment about its middle that it carried (N*m/m).
+   */
+  double moment;
+} enmm_cut;
+
+/**
  * A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
  * last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
  * mean along it.
@@ -1316,8 +1411,8 @@ enmm_status enmm_set_boundary_pressure(struct enmm_model *model, uint32_t port, 
 enmm_status enmm_set_joint_pressure(struct enmm_model *model, uint32_t port, double p);
 
 /**
- * Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied; 1 is the
- * strength of the case.
+ * Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints and of rock that yields or
+ * breaks are multiplied; 1 is the strength of the case.
  *
  * Acts at the same times as enmm_set_gravity.
  *
@@ -1537,7 +1632,9 @@ enmm_status enmm_name(struct enmm_model *model,
 enmm_status enmm_get_monitor_state(struct enmm_model *model, uint32_t monitor, struct enmm_monitor_state *out);
 
 /**
- * Returns the number of blocks, excavated ones included. It never changes.
+ * Returns the number of blocks, excavated ones included. It grows when rock breaks and when a stage parts blocks, and
+ * falls only with a return to an earlier state; without `fracture` and cuts in the case it never changes. Blocks keep
+ * their ids.
  *
  * Errors: ENMM_NULL_ARGUMENT.
  */
@@ -1604,6 +1701,21 @@ enmm_status enmm_get_events(struct enmm_model *model,
                             struct enmm_event *out,
                             size_t capacity,
                             size_t *written);
+
+/**
+ * Returns the most blocks that the model can have: those of its last stage, and fracture.parts_max more where rock can
+ * break.
+ *
+ * Errors: ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_blocks_max(struct enmm_model *model, size_t *count);
+
+/**
+ * Writes the sections of rock that have broken, in order. A return to a saved state restores its own.
+ *
+ * Buffer and errors as enmm_get_block_states.
+ */
+enmm_status enmm_get_cuts(struct enmm_model *model, struct enmm_cut *out, size_t capacity, size_t *written);
 
 /**
  * Writes the current outer outline of a block, counter-clockwise, as x, y, x, y, ... (m).

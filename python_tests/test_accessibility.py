@@ -22,12 +22,14 @@ def axe() -> str:
 
 @pytest.fixture(scope="module")
 def pages(enmm, results, cases, short_case, tmp_path_factory):
-    """The addresses of a page of a run, of a factor of safety, of a report on paper and of the editor."""
+    """The addresses of a page of a run, of one in which rock breaks, of a factor of safety, of a report on paper and of the editor."""
     place = tmp_path_factory.mktemp("pages")
     found = enmm("fos", cases / "plane_slide.toml", "-o", place / "fos")
     assert found.returncode == 0, found.stderr
     made = enmm("report", place / "fos", "--no-pdf")
     assert made.returncode == 0, made.stderr
+    broken = enmm("run", cases.parent / "breaking" / "overhang.toml", "-o", place / "breaks", "--quiet")
+    assert broken.returncode == 0, broken.stderr
     case = place / "edited.toml"
     case.write_text(short_case.read_text())
     command = [from_environment("ENMM_BIN"), "edit", case, "--face", "60/90"]
@@ -35,6 +37,7 @@ def pages(enmm, results, cases, short_case, tmp_path_factory):
         yield {
             "run": (results / "report.html").as_uri(),
             "fos": (place / "fos" / "report.html").as_uri(),
+            "breaks": (place / "breaks" / "report.html").as_uri(),
             "paper": (place / "fos" / "report_a4.html").as_uri(),
             "edit": re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline()).group(),
         }
@@ -54,20 +57,20 @@ def found_by(page, axe: str) -> list[str]:
 
 
 @pytest.mark.parametrize("size", SIZES, ids=["telephone", "desk"])
-@pytest.mark.parametrize("name", ["run", "fos", "paper", "edit"])
+@pytest.mark.parametrize("name", ["run", "fos", "breaks", "paper", "edit"])
 def test_axe_has_no_objection(program, axe, pages, tmp_path, name, size):
     page = browser.Browser(program, tmp_path / "profile", size)
     try:
         # The pages of results forbid scripts of others.
         page.call("Page.setBypassCSP", enabled=True)
-        if name in ("run", "fos"):
+        if name in ("run", "fos", "breaks"):
             page.open(pages[name])
         else:
             page.call("Page.navigate", url=pages[name])
             ready = "document.body.dataset.shown > 0 && !document.getElementById('net').hidden" if name == "edit" else "true"
             page.wait(f"document.readyState === 'complete' && document.querySelector('main, #model') && {ready}")
         page.painted()
-        for theme in ["light", "dark"] if name in ("run", "fos") else [None]:
+        for theme in ["light", "dark"] if name in ("run", "fos", "breaks") else [None]:
             if theme:
                 page.run(f"document.documentElement.dataset.theme !== '{theme}' && document.getElementById('theme').click()")
             assert found_by(page, axe) == [], theme

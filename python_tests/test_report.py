@@ -253,6 +253,85 @@ def test_bolts_supports_and_water_are_drawn(enmm, page, cases, tmp_path):
     quiet(page)
 
 
+def test_a_page_follows_a_block_that_breaks_and_lists_the_break(enmm, page, cases, tmp_path):
+    case = cases.parent / "breaking" / "overhang.toml"
+    answer = enmm("run", case, "-o", tmp_path / "out", "--quiet", "--set", "output.pictures=false")
+    assert answer.returncode == 0, answer.stderr
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    (broken,) = summary["breaks"]
+    page.open((tmp_path / "out" / "report.html").as_uri())
+    page.painted()
+    # The parts after the break: two blocks before, one more behind it, which falls in one frame after the other.
+    counts = page.run("enmm.film.frames.map(({time, shape}) => [time, shape.count])")
+    assert all(count == (2 if time < broken["time"] else 3) for time, count in counts)
+    assert {count for _, count in counts} == {2, 3}
+    page.run("enmm.player.seek(enmm.film.end)")
+    page.painted()
+    falls = f"enmm.film.shape.places.get({broken['block']})"
+    assert page.run(f"enmm.film.frames.at(-1).displacement_y[{falls}]") < -2.5
+    assert "3 blocks" in page.run("document.getElementById('subtitle').textContent")
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    sky, rock = (picture.getpixel(tuple(round(part) for part in place(page, 15.5, y))) for y in (13.0, 9.5))
+    assert sky != rock, "where the overhang was there is air, and it lies below"
+    # The list: when, what and how, then where and the forces.
+    lines = page.run("[...document.querySelectorAll('#breaks tbody tr')].map(row => row.innerText)")
+    assert len(lines) == 2 and "by bending" in lines[0] and f"{broken['share']:.3f}" in lines[0]
+    assert f"\t{broken['block']}\t" in lines[0] and f"Block {broken['part']} parts off." in lines[1]
+    assert lines[1].startswith("(13.00, 10.00) to (13.00, 14.00) m: N ")
+    forces = dict(re.findall(r"([NVM]) (−?[\d.]+) M?k?N", lines[1]))
+    for name, key in (("N", "normal"), ("V", "shear"), ("M", "moment")):
+        weights = [float(forces[name].replace("−", "-")) * unit for unit in (1.0, 1e3, 1e6)]
+        assert any(close(weight, broken[key]) for weight in weights), (name, lines[1])
+    page.run("document.querySelector('#breaks button').click()")
+    page.painted()
+    shown_at = page.run("enmm.player.time")
+    assert shown_at >= broken["time"] and page.run("enmm.film.shape.count") == 3
+    # The colour: shares from 0 to 1, by the name of blocks.csv, whose last column it is.
+    page.run("document.querySelector('[data-colour=strength_share]').click()")
+    page.painted()
+    assert page.run("enmm.limits") == [0, 1]
+    legend = page.run("document.getElementById('legend').innerText").split("\n")
+    assert legend[0] == "Share of strength, worst section" and legend[-1] == "1.000"
+    rows = table(tmp_path / "out" / "blocks.csv")
+    last = page.run("Array.from(enmm.film.frames.at(-1).strength_share)")
+    assert all(close(share, float(row["strength_share"])) for share, row in zip(last, rows, strict=True))
+    frame = meshio.read(max((tmp_path / "out" / "frames").glob("elements_*.vtu")))
+    assert set(frame.cell_data["strength_share"][0]) <= {float(row["strength_share"]) for row in rows}
+    quiet(page)
+
+
+# Dug slowly, the overhang of the examples has 3ρgL²/t of its weight at its root: 0.56 of its strength.
+def test_a_page_names_the_block_nearest_to_breaking(enmm, page, cases, tmp_path):
+    case = (cases.parent / "breaking" / "overhang.toml").read_text()
+    slow = tmp_path / "slow.toml"
+    slow.write_text(case.replace('kind = "dynamic"\nduration = 0.8\ndamping = 0.02', 'kind = "static"\nduration_max = 5.0'))
+    answer = enmm("run", slow, "-o", tmp_path / "out", "--quiet", "--set", 'output.pictures=["strength"]')
+    assert answer.returncode == 0, answer.stderr
+    assert (tmp_path / "out" / "stage2_strength.png").exists()
+    worst = json.loads((tmp_path / "out" / "summary.json").read_text())["worst_sections"][0]
+    assert worst["failure"] == "bends" and worst["share"] == pytest.approx(0.4782 / 0.85, rel=2e-3)
+    page.open((tmp_path / "out" / "report.html").as_uri())
+    page.painted()
+    assert page.run("document.getElementById('breaks')") is None
+    facts = page.run(
+        "[...document.querySelectorAll('#panel section')].find(({innerText}) => innerText.startsWith('Nearest to breaking'))"
+        ".innerText"
+    )
+    for text in (f"Block\t{worst['block']}\n", "How\tby bending", "From\t(13.00, 10.00) m", "0.56"):
+        assert text in facts, facts
+    colours = page.run("Array.from(enmm.film.frames.at(-1).strength_share)")
+    assert max(colours) == pytest.approx(worst["share"], rel=1e-4)
+    quiet(page)
+
+
+# Pages, tables and frames of rock that does not break are as they were.
+def test_results_of_rock_that_does_not_break_know_no_strength(report, results):
+    assert "strength_share" not in (results / "blocks.csv").read_text()
+    assert "function breaksSection" not in (results / "report.html").read_text()
+    assert report.run("document.querySelector('[data-colour=strength_share]')") is None
+    assert report.run("document.getElementById('breaks')") is None
+
+
 @pytest.mark.parametrize("size", [(390, 800), (1440, 900)])
 def test_nothing_hides_the_slope_and_play_is_in_reach(program, results, tmp_path, size):
     page = browser.Browser(program, tmp_path / "profile", size)

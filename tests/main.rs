@@ -8,6 +8,7 @@ mod bolt_law;
 mod bolts;
 mod bond_softening;
 mod breaking;
+mod breaking_hosts;
 mod bridge_sections;
 mod checkpoint;
 mod columns;

@@ -65,6 +65,7 @@ using BlockState = enmm_block_state;
 using Contact = enmm_contact;
 using Energies = enmm_energies;
 using Event = enmm_event;
+using Cut = enmm_cut;
 using MonitorState = enmm_monitor_state;
 using PortState = enmm_port_state;
 using Progress = enmm_progress;
@@ -524,6 +525,12 @@ public:
     }
 
     std::vector<Contact> contacts() const { return list<Contact>(enmm_get_contacts); }
+
+    /** Most blocks that the model can have: those of its last stage, and fracture.parts_max more where rock can break. */
+    std::size_t blocks_max() const { return detail::number<std::size_t>(handle_, enmm_blocks_max); }
+
+    /** Sections of rock that have broken so far, in order. */
+    std::vector<Cut> cuts() const { return list<Cut>(enmm_get_cuts); }
 
     /** Events from index `first` on. */
     std::vector<Event> events(std::size_t first = 0) const

@@ -9,7 +9,7 @@ use std::fmt::Display;
 
 use crate::cover::BlockId;
 use crate::geometry::Vector;
-use crate::state::{Input, Inputs, Port, PortKind};
+use crate::state::{Input, Inputs, PortKind};
 
 use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX, VELOCITY_MAX};
 use super::{Cosimulation, CosimulationError};
@@ -52,7 +52,8 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// Sets the factor by which cohesion, tan φ and tensile strength of all joints are multiplied (1 at the start).
+    /// Sets the factor by which cohesion, tan φ and tensile strength of all joints, and of rock that yields or breaks,
+    /// are multiplied (1 at the start).
     ///
     /// # Errors
     /// A value that is not finite, negative or too large.
@@ -67,8 +68,8 @@ impl Cosimulation {
     }
 
     /// Sets force (N/m) through the centroid of a block and moment about it (N·m/m, counter-clockwise); they take the
-    /// position of those that a port of the case has at the start. The block is an id or its number, such as that of
-    /// [`Cosimulation::port_block`].
+    /// position of those that a port of the case has at the start. The block is given by its number, such as that of
+    /// [`Cosimulation::port_block`], which its part with the reference point keeps when rock breaks.
     ///
     /// # Errors
     /// A value that is not finite or too large, or a block that does not exist.
@@ -92,17 +93,28 @@ impl Cosimulation {
     ) -> Result<(), CosimulationError> {
         let forces = forces.map(|(block, force, moment)| (block.into(), force.into(), moment));
         for (block, force, moment) in forces.clone() {
-            self.check_block(block)?;
+            self.own_block(block)?;
             vector(&format_args!("force on block {block}"), force, VALUE_MAX, "N/m")?;
             number(&format_args!("moment on block {block}"), moment, VALUE_MAX, "N·m/m")?;
         }
+        let built = self.simulation.shared_model();
         self.set(|inputs| {
             forces.fold(false, |changed, (block, force, moment)| {
+                let block = built.model.block_labelled(block.number()).unwrap_or(block);
                 let force = replace(&mut inputs.block_force[block], force);
                 changed | force | replace(&mut inputs.block_moment[block], moment)
             })
         });
         Ok(())
+    }
+
+    /// Force (N/m) and moment (N·m/m) that are set on a block.
+    ///
+    /// # Errors
+    /// A block that does not exist.
+    pub fn block_force(&self, block: impl Into<BlockId>) -> Result<(Vector, f64), CosimulationError> {
+        let (block, inputs) = (self.own_block(block.into())?, self.inputs());
+        Ok((inputs.block_force[block], inputs.block_moment[block]))
     }
 
     /// Sets traction (Pa, global axes, per reference length) on the boundary of a port.
@@ -167,7 +179,7 @@ impl Cosimulation {
     /// # Errors
     /// A block or a port that does not exist.
     pub fn jump_of(&mut self, input: Input) -> Result<(), CosimulationError> {
-        let input = self.own_input(input)?;
+        let input = self.model_input(self.own_input(input)?);
         self.simulation.drive().jump_of(input);
         Ok(())
     }
@@ -175,23 +187,33 @@ impl Cosimulation {
     /// The input that exists, which for a port of a block is that of its block.
     pub(super) fn own_input(&self, input: Input) -> Result<Input, CosimulationError> {
         match input {
-            Input::Block(block) => self.check_block(BlockId::new(block as usize)).map(|()| input),
-            Input::Port(port) => Ok(match self.port(port as usize)? {
-                Port { kind: PortKind::Block, block, .. } => Input::Block(block.number()),
+            Input::Block(block) => self.own_block(BlockId::new(block as usize)).map(|_| input),
+            Input::Port(port) => Ok(match self.port(port as usize)?.kind {
+                PortKind::Block => Input::Block(self.port_block(port as usize)?),
                 _ => input,
             }),
             _ => Ok(input),
         }
     }
 
-    /// Checks that a block exists.
-    pub(super) fn check_block(&self, block: BlockId) -> Result<(), CosimulationError> {
-        let count = self.simulation.model().covers.block_count();
-        if block.index() < count {
-            return Ok(());
-        }
-        let limit = format!("less than the number of blocks, {count}");
-        Err(CosimulationError::value("block", block, &limit, "ask for the states of the blocks to see their ids"))
+    /// An input that exists, with the index that its block has in the model now.
+    pub(super) fn model_input(&self, input: Input) -> Input {
+        let block = match input {
+            Input::Block(number) => self.simulation.block_labelled(number),
+            _ => None,
+        };
+        block.map_or(input, |block| Input::Block(block.number()))
+    }
+
+    /// The block of the model that has the number of `block`.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn own_block(&self, block: BlockId) -> Result<BlockId, CosimulationError> {
+        self.simulation.block_labelled(block.number()).ok_or_else(|| {
+            let limit = format!("less than the number of blocks, {}", self.simulation.model().covers.block_count());
+            CosimulationError::value("block", block, &limit, "ask for the states of the blocks to see their ids")
+        })
     }
 
     fn check_port(&self, port: usize, kinds: &[PortKind], what: &str) -> Result<&str, CosimulationError> {

@@ -5,7 +5,7 @@
 //! state as if nothing had been read in between, unless an input has changed, which then acts from this very time.
 
 use crate::model::SlopeFailure;
-use crate::state::{Counters, Event, EventKind};
+use crate::state::{Counters, Event, EventKind, Input};
 use crate::step::Wanted;
 use enmm_case::keys::Plain;
 
@@ -277,12 +277,13 @@ impl Cosimulation {
     fn set_drive(&mut self, end: f64) {
         let (start, now) = (self.progress.start, self.simulation.time());
         let common = self.progress.interpolation;
-        let others = self.ways.iter().filter(|(_, way)| **way != common).map(|(input, _)| *input);
+        let others = self.ways.iter().filter(|(_, way)| **way != common);
+        let others: Vec<Input> = others.map(|(&input, _)| self.model_input(input)).collect();
         let drive = self.simulation.drive();
         match common {
             Interpolation::Linear => {
                 (drive.since, drive.until) = (now, start + end);
-                others.for_each(|input| drive.from.take_over(input, &drive.to));
+                others.into_iter().for_each(|input| drive.from.take_over(input, &drive.to));
             }
             Interpolation::Hold if self.ways.is_empty() => drive.jump(),
             Interpolation::Hold => {

@@ -35,7 +35,8 @@ mod tuning;
 mod watch;
 mod witness;
 
-pub use crate::state::{Event, EventKind, Input, PortKind, Quantity};
+pub use crate::mechanics::SectionFailure;
+pub use crate::state::{Cut, Event, EventKind, Input, PortKind, Quantity};
 pub use error::CosimulationError;
 pub use interval::{Interval, StepInfo};
 pub use names::Named;
@@ -168,7 +169,6 @@ impl Cosimulation {
     /// The first value of the case that does not fit, with its key.
     pub fn new(case: Case) -> Result<Self, Invalid> {
         let hash = case.fingerprint()?;
-        case.refuse_cuts("a model that a host drives")?;
         let mut simulation = Simulation::new(case)?;
         simulation.set_serial(true);
         let parameters = Parameters::of(simulation.case())?;
@@ -333,6 +333,7 @@ impl Cosimulation {
             witness.stage_ends(&self.simulation, last);
         }
         self.simulation.next_stage().map_err(CosimulationError::Stage)?;
+        self.check_block_count()?;
         if self.progress.started {
             self.note_stage();
         }
@@ -342,9 +343,43 @@ impl Cosimulation {
         Ok(())
     }
 
-    /// State of every block, by id.
+    /// State of every block, by number.
     pub fn block_states(&self) -> Vec<BlockState> {
-        self.simulation.block_states()
+        self.blocks().into_iter().copied().collect()
+    }
+
+    /// The same, worked out at the first look after a step.
+    pub fn blocks(&self) -> Vec<&BlockState> {
+        let mut states: Vec<&BlockState> = self.simulation.blocks().iter().collect();
+        states.sort_unstable_by_key(|state| state.id);
+        states
+    }
+
+    /// Sections of rock that have broken so far, in order; their times count as [`Cosimulation::time`] does.
+    pub fn cuts(&self) -> impl ExactSizeIterator<Item = Cut> + '_ {
+        let start = self.progress.start;
+        self.simulation.cuts().iter().map(move |cut| Cut { time: cut.time - start, ..*cut })
+    }
+
+    /// Most blocks that the model can have: those of its last stage, and `fracture.parts_max` more where rock can
+    /// break.
+    pub fn blocks_max(&self) -> usize {
+        self.simulation.blocks_max()
+    }
+
+    /// Refuses more blocks than hosts have been told of.
+    fn check_block_count(&self) -> Result<(), CosimulationError> {
+        let (count, most) = (self.simulation.model().covers.block_count(), self.blocks_max());
+        if count <= most {
+            return Ok(());
+        }
+        let stage = self.simulation.state().stage;
+        let message = format!(
+            "parts blocks that have broken, so that the model has {count} of them and not the {most} that hosts have \
+             been told of; raise fracture.parts_max by {} or more",
+            count - most
+        );
+        Err(CosimulationError::Stage(Invalid { key: format!("stage[{stage}].cut"), message }))
     }
 
     /// Values that the host has set, or the case's own.

@@ -38,6 +38,6 @@ impl Cosimulation {
     /// # Errors
     /// There is no such port.
     pub fn port_block(&self, port: usize) -> Result<u32, CosimulationError> {
-        Ok(self.port(port)?.block.number())
+        Ok(self.simulation.model().labels[self.port(port)?.block])
     }
 }

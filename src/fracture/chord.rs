@@ -1,7 +1,7 @@
 //! A section through a block: a straight line from one point of its boundary to another, and the part on its left.
 
 use crate::cover::ElementId;
-use crate::geometry::{Point, Vector, cross, polygon, segment};
+use crate::geometry::{Point, Vector, cross, orientation, polygon, segment};
 use crate::state::Model;
 
 use super::outline::{End, Outline};
@@ -30,7 +30,17 @@ pub struct Chord {
     /// Covers of which a share of the mass does.
     partial: Vec<(u32, f64)>,
     /// Rock to its left and to its right (m), of a block that is not convex.
-    sides: Option<[Vec<Point>; 2]>,
+    sides: Option<Sides>,
+}
+
+/// The rock on both sides of a section.
+#[derive(Debug, Clone)]
+struct Sides {
+    /// Rock to the left and to the right (m).
+    rock: [Vec<Point>; 2],
+    /// Which of both has the smaller box, and that box (m).
+    smaller: usize,
+    bounds: (Point, Point),
 }
 
 impl Chord {
@@ -63,7 +73,7 @@ impl Chord {
         if !sides.iter().all(is_part) {
             return None;
         }
-        let sides = (!outline.is_convex).then_some(sides);
+        let sides = (!outline.is_convex).then(|| Sides::new(sides));
         let is_square = is_square(outline, ends, places);
         let mut chord = Self { ends, places, is_square, whole: Vec::new(), partial: Vec::new(), sides };
         chord.weigh(model, outline);
@@ -105,7 +115,7 @@ impl Chord {
         }
         let is_left = match &self.sides {
             None => aside > 0.0,
-            Some([left, right]) => distance(left, middle) <= distance(right, middle),
+            Some(sides) => sides.is_left(middle),
         };
         (if is_left { 1.0 } else { 0.0 }, [middle; 2])
     }
@@ -121,18 +131,17 @@ impl Chord {
             let element = covers.polygon(e);
             let local = covers.element_covers[e].map(|cover| cover.index() - first);
             let density = model.rock_of(e).density;
-            let (area, centroid) = match self.side_of(element, covers.element_centroid[e]) {
-                Some(false) => continue,
-                Some(true) => (covers.element_area[e], covers.element_centroid[e]),
-                None => {
-                    local.iter().for_each(|&k| is_cut[k] = true);
-                    clip(element, self.places, &mut part);
-                    (polygon::area(&part), polygon::centroid(&part))
-                }
-            };
-            if area > 0.0 {
+            let mut add = |area: f64, centroid: Point| {
                 for (k, w) in local.iter().zip(covers.weights(e, centroid)) {
                     mass[*k] += density * area * w;
+                }
+            };
+            match self.side_of(element, covers.element_centroid[e]) {
+                Some(false) => {}
+                Some(true) => add(covers.element_area[e], covers.element_centroid[e]),
+                None => {
+                    local.iter().for_each(|&k| is_cut[k] = true);
+                    self.each_left_part(element, &mut part, &mut add);
                 }
             }
         }
@@ -142,11 +151,10 @@ impl Chord {
     /// Whether an element lies to its left; none where it cuts it.
     fn side_of(&self, element: &[Point], centroid: Point) -> Option<bool> {
         let across = left_of(self.places);
-        let [from, to] = self.places;
-        let asides = || element.iter().map(|p| (p - from).dot(&across));
+        let asides = || element.iter().map(|p| (p - self.places[0]).dot(&across));
         let least = ON * self.length();
         let (low, high) = asides().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
-        let Some([left, right]) = &self.sides else {
+        let Some(sides) = &self.sides else {
             return if low >= -least * ON {
                 Some(true)
             } else if high <= least * ON {
@@ -155,18 +163,49 @@ impl Chord {
                 None
             };
         };
-        if low < 0.0 && high > 0.0 {
-            let way = (to - from).normalize();
-            let crossings = polygon::sides(element).filter_map(|(a, b)| {
-                let [da, db] = [a, b].map(|p| (p - from).dot(&across));
-                ((da < 0.0) != (db < 0.0)).then(|| (a + (b - a) * (da / (da - db)) - from).dot(&way))
-            });
-            let (start, end) = crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
-            if end.min(self.length()) - start.max(0.0) > least {
-                return None;
-            }
+        if low < 0.0 && high > 0.0 && self.runs_through(element) {
+            return None;
         }
-        Some(distance(left, centroid) <= distance(right, centroid))
+        Some(sides.is_left(centroid))
+    }
+
+    /// Whether it, and not only its line, runs through a polygon that the line cuts.
+    fn runs_through(&self, polygon: &[Point]) -> bool {
+        let (across, [from, to]) = (left_of(self.places), self.places);
+        let way = (to - from).normalize();
+        let crossings = polygon::sides(polygon).filter_map(|(a, b)| {
+            let [da, db] = [a, b].map(|p| (p - from).dot(&across));
+            ((da < 0.0) != (db < 0.0)).then(|| (a + (b - a) * (da / (da - db)) - from).dot(&way))
+        });
+        let (start, end) = crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
+        end.min(self.length()) - start.max(0.0) > ON * self.length()
+    }
+
+    /// Area (m²) and centroid (m) of each part to its left of an element that it runs through. The line of a section
+    /// may cut the element a second time, beyond a notch, where the section does not run.
+    fn each_left_part(&self, element: &[Point], part: &mut Vec<Point>, mut add: impl FnMut(f64, Point)) {
+        let mut add_part = |piece: &[Point]| {
+            let aside = |p: &Point| (p - self.places[0]).dot(&left_of(self.places));
+            let crosses = piece.iter().any(|p| aside(p) < 0.0) && piece.iter().any(|p| aside(p) > 0.0);
+            match &self.sides {
+                Some(sides) if !(crosses && self.runs_through(piece)) => {
+                    if sides.is_left(polygon::centroid(piece)) {
+                        add(polygon::area(piece), polygon::centroid(piece));
+                    }
+                }
+                _ => {
+                    clip(piece, self.places, part);
+                    if polygon::area(part) > 0.0 {
+                        add(polygon::area(part), polygon::centroid(part));
+                    }
+                }
+            }
+        };
+        if self.sides.is_none() || is_convex(element) {
+            add_part(element);
+        } else {
+            polygon::triangles(element).iter().for_each(|triangle| add_part(triangle));
+        }
     }
 
     /// Keeps the covers whose mass (kg/m) lies to the left, as a whole or in part.
@@ -184,6 +223,27 @@ impl Chord {
                 self.whole.push([k32, k32 + 1]);
             }
         }
+    }
+}
+
+impl Sides {
+    fn new(rock: [Vec<Point>; 2]) -> Self {
+        let bounds = rock.each_ref().map(|side| polygon::bounds(side));
+        let [left, right] = bounds.map(|(low, high)| (high - low).product());
+        let smaller = usize::from(right < left);
+        let (low, high) = bounds[smaller];
+        let room = Vector::repeat(ON * (high - low).norm());
+        Self { rock, smaller, bounds: (low - room, high + room) }
+    }
+
+    /// Whether a point of the block lies in the rock on the left rather than in that on the right.
+    fn is_left(&self, p: Point) -> bool {
+        let (low, high) = self.bounds;
+        if p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y {
+            return self.smaller == 1;
+        }
+        let [left, right] = self.rock.each_ref().map(|side| distance(side, p));
+        left <= right
     }
 }
 
@@ -261,10 +321,9 @@ fn part(outline: &Outline, [from, to]: [End; 2], places: [Point; 2]) -> Vec<Poin
     let mut k = to.edge;
     while k != from.edge {
         k = (k + 1) % outline.points.len();
-        side.push(outline.points[k]);
-    }
-    if from.along == 0.0 {
-        side.pop();
+        if outline.turns[k] && !(k == from.edge && from.along == 0.0) {
+            side.push(outline.points[k]);
+        }
     }
     side
 }
@@ -283,6 +342,12 @@ fn clip(element: &[Point], places: [Point; 2], part: &mut Vec<Point>) {
             part.push(a + (b - a) * (da / (da - db)));
         }
     }
+}
+
+/// Whether a polygon turns left at all its corners.
+fn is_convex(polygon: &[Point]) -> bool {
+    let n = polygon.len();
+    (0..n).all(|k| orientation(polygon[k], polygon[(k + 1) % n], polygon[(k + 2) % n]) >= 0.0)
 }
 
 /// Distance (m) of a point from a polygon, 0 inside.

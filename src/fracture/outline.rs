@@ -7,6 +7,8 @@ use crate::state::Model;
 
 /// Distance over the mesh size within which a support holds an edge.
 const HELD: f64 = 1e-6;
+/// Distance over the mesh size within which a point lies on a straight face.
+const STRAIGHT: f64 = 1e-9;
 
 /// A block that can break.
 #[derive(Debug, Clone)]
@@ -19,6 +21,8 @@ pub struct Outline {
     pub edges: Vec<EdgeId>,
     /// Their places (m).
     pub points: Vec<Point>,
+    /// Whether the boundary turns at each point; where a straight face crosses the mesh it does not.
+    pub turns: Vec<bool>,
     /// Whether a support holds each edge.
     pub held: Vec<bool>,
     /// Whether it is convex.
@@ -62,10 +66,13 @@ impl Outline {
             supports.iter().any(|at| segment::distance(*at, a, b) <= near)
         };
         let turns_left = |k: usize| orientation(points[k], points[(k + 1) % n], points[(k + 2) % n]) >= 0.0;
+        let straight = STRAIGHT * model.covers.mesh.size;
+        let turns = |k: usize| segment::distance(points[k], points[(k + n - 1) % n], points[(k + 1) % n]) > straight;
         let (low, high) = polygon::bounds(&points);
         Some(Self {
             block,
             rock: rock?,
+            turns: (0..n).map(turns).collect(),
             held: (0..n).map(is_held).collect(),
             is_convex: (0..n).all(turns_left),
             extent: (high - low).norm(),

@@ -187,7 +187,7 @@ impl<'a> LoadedBlock<'a> {
         let carries = self.share(&chord).map(|(_, _, carries)| carries);
         match carries.filter(|_| share > worst.share) {
             Some(carries) => {
-                let failure = SectionFailure::Opens;
+                let failure = SectionFailure::Splits;
                 WorstSection { share, ends: chord.places, carries, failure, barred: worst.barred }
             }
             None => worst,

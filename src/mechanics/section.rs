@@ -43,11 +43,15 @@ pub struct RockStrength {
 /// How a section fails.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum SectionFailure {
-    /// Its outermost fibre has the tensile strength.
+    /// Its outermost fibre has the tensile strength, by tension more than by bending.
     #[default]
     Opens,
     /// It has its strength in shear.
     Slides,
+    /// Its outermost fibre has the tensile strength, by bending more than by tension.
+    Bends,
+    /// A core of its block has the tensile strength.
+    Splits,
 }
 
 /// What rock carries across a section.
@@ -66,12 +70,17 @@ impl Resultants {
     pub fn share(&self, length: f64, rock: &RockStrength) -> (f64, SectionFailure) {
         let RockStrength { tension, cohesion, friction, characteristic } = *rock;
         let bending = 6.0 * self.moment.abs() / (bending_strength(length, characteristic) * length * length);
-        let opens = (self.normal / length + bending) / tension;
+        let stretch = self.normal / length;
+        let opens = (stretch + bending) / tension;
         // The shear strength ends where the tensile strength does, so that what has none left opens first.
         let pressure = if self.normal <= 0.0 { -self.normal * friction } else { -self.normal * cohesion / tension };
         let strength = cohesion * length + pressure;
         let slides = if strength > 0.0 { self.shear.abs() / strength } else { 0.0 };
-        if slides > opens { (slides, SectionFailure::Slides) } else { (opens, SectionFailure::Opens) }
+        if slides > opens {
+            (slides, SectionFailure::Slides)
+        } else {
+            (opens, if bending > stretch { SectionFailure::Bends } else { SectionFailure::Opens })
+        }
     }
 }
 
@@ -119,7 +128,7 @@ mod tests {
     fn a_section_fails_at_its_tensile_and_shear_strength() {
         let of = |normal, shear, moment| Resultants { normal, shear, moment }.share(2.0, &ROCK);
         assert_eq!(of(1e7, 0.0, 0.0), (1.0, SectionFailure::Opens));
-        assert_eq!(of(-2e6, 0.0, 4e6), (1.0, SectionFailure::Opens));
+        assert_eq!(of(-2e6, 0.0, 4e6), (1.0, SectionFailure::Bends));
         assert_eq!(of(-2e6, -32e6, 0.0), (1.0, SectionFailure::Slides));
         assert_eq!(of(0.0, 30e6, 0.0), (1.0, SectionFailure::Slides));
         assert!(of(1e7 + 1.0, 1e9, 0.0).0 > 1.0);

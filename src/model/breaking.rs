@@ -101,7 +101,6 @@ impl Simulation {
         let masses = &self.workspace.mass_matrix;
         let now = (&self.built.model, &self.state);
         self.state = recut::carry_break(&lineage, now, masses, &ground.model, &cut);
-        self.state.cuts = cuts;
         self.stand_on(ground);
         step::prepare(&self.built.model, &self.state, &mut self.workspace);
         let after = self.energy_of_rock_and_springs();
@@ -147,6 +146,31 @@ impl Simulation {
             }
         }
         field
+    }
+
+    /// This model at this time with the sections cut that have broken in another since, which goes on from it: both
+    /// have the same blocks then, and can be compared.
+    #[must_use]
+    pub fn with_breaks_of(&self, other: &Self) -> Self {
+        let mut cut = self.clone();
+        cut.looks.forget();
+        for count in self.state.cuts.len()..other.state.cuts.len() {
+            let cuts = &other.state.cuts[..=count];
+            let ground = other.ground(cuts[count].stage as usize, cuts).ok();
+            let Some((built, lineage)) = ground.and_then(|ground| Some((ground.built, ground.lineage?))) else { break };
+            let before = (&cut.built.model, &cut.state);
+            cut.state = recut::carry(&lineage, before, &cut.workspace.mass_matrix, &built.model);
+            cut.state.cuts.push(cuts[count]);
+            cut.stand_on(built);
+            step::prepare(&cut.built.model, &cut.state, &mut cut.workspace);
+        }
+        cut
+    }
+
+    /// Most blocks that the model can have: those of its last stage, and as many parts more as rock may break into.
+    pub fn blocks_max(&self) -> usize {
+        let parts = self.model().breaking.as_ref().map_or(0, |breaking| breaking.parts_max.min(breaking.cuts_max));
+        self.grounds.last().map_or(0, |ground| ground.built.model.covers.block_count()) + parts
     }
 
     /// Sections of rock that have broken so far.

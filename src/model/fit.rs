@@ -18,6 +18,8 @@ use crate::state::{
     Seepage, State, WorstSection,
 };
 
+use crate::step::has_bonds;
+
 use super::Simulation;
 use super::assemble::Built;
 use super::case::StageKind;
@@ -172,7 +174,7 @@ impl Simulation {
         let model = &built.model;
         self.check_motion(model, state)?;
         check_contacts(model, contacts)?;
-        check_bonds(model, (bonds, contacts.len()), laws, sections)?;
+        check_bonds(model, (bonds, has_bonds(model, state).then_some(contacts.len())), laws, sections)?;
         if let Some(FrictionDelay { time, hop }) = *friction_delay {
             between("friction_delay.time", time, 0.0, TIME)?;
             between("friction_delay.hop", hop, 0.0, LENGTH)?;
@@ -517,12 +519,11 @@ fn check_laws(found: &[JointLaw], mut own: Vec<JointLaw>) -> Fit {
 
 fn check_bonds(
     model: &Model,
-    (bonds, contacts): (&[BondHistory], usize),
+    (bonds, count): (&[BondHistory], Option<usize>),
     laws: &[JointLaw],
     sections: &[Option<Release>],
 ) -> Fit {
-    let is_soft = laws.iter().any(|law| law.softening.is_some());
-    length("bonds", bonds.len(), if is_soft { contacts } else { 0 })?;
+    length("bonds", bonds.len(), count.unwrap_or(0))?;
     length("sections", sections.len(), model.sections.list.len())?;
     for (k, &Release { carried, left }) in sections.iter().enumerate().filter_map(|(k, s)| Some((k, s.as_ref()?))) {
         between(format_args!("sections[{k}].left"), left, 0.0, 1.0)?;

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::recut::Lineage;
-use crate::state::{self, State};
+use crate::state::{self, Model, PortKind, State};
 
 use super::Simulation;
 use super::assemble::{BuildStage, Built, Cut, ExplicitAlone, Integrators, build as build_once};
@@ -67,9 +67,18 @@ fn after(
     let key = cuts.last().map_or_else(|| format!("stage[{stage}].cut"), |cut| cut.key.clone());
     let (mut built, _) = build_once(case, (&cuts, Some(&before.model.boundary)), integrators, tell)?;
     let lineage = lineage(before, &built).map_err(|message| Invalid { key, message })?;
-    built.model.labels = lineage.labels(&before.model, &built.model);
+    built.model.labels = lineage.labels(&before.model);
+    keep_ports(&before.model, &mut built.model);
     built.model.detection = before.model.detection;
     Ok(Ground { built: Arc::new(built), lineage: Some(Arc::new(lineage)) })
+}
+
+/// Ports of blocks go on with the number that their block has had, which the part with the first of them keeps.
+fn keep_ports(before: &Model, model: &mut Model) {
+    let blocks: Vec<_> = before.ports.iter().map(|was| model.block_labelled(before.labels[was.block])).collect();
+    for (port, block) in model.ports.iter_mut().zip(blocks).filter(|(port, _)| port.kind == PortKind::Block) {
+        port.block = block.unwrap_or(port.block);
+    }
 }
 
 /// Models of rock that has broken in the course of a run, which copies of a simulation share. The last ones are kept,

@@ -27,7 +27,9 @@ pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
 pub use mechanism::{Mechanism, RigidMotion};
-pub use observe::{BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState};
+pub use observe::{
+    BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,
+};
 pub use restless::Restless;
 pub use seepage::FlowSurvey;
 pub use simulation::Simulation;

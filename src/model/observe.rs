@@ -44,6 +44,9 @@ pub struct BlockState {
     pub strain_energy: f64,
     /// Number and penetration of its contacts.
     pub contacts: BlockContacts,
+    /// Share of its strength that the section of the block has which is nearest to breaking; 0 of rock that does not
+    /// break.
+    pub strength_share: f64,
 }
 
 /// A contact as hosts see it, with the forces of the last step.
@@ -134,6 +137,14 @@ pub const BLOCK_QUANTITIES: [Quantity<BlockState>; 18] = [
     Quantity::new(["speed", ""], "m/s", "Speed of the centroid", |block| block.velocity.norm()),
 ];
 
+/// Numbers of a block of rock that can break. Files show them behind those of [`BLOCK_QUANTITIES`] where the case has
+/// such rock, so that those of all others stay as they are; hosts, which refuse such cases, have none.
+pub const STRENGTH_QUANTITIES: [Quantity<BlockState>; 1] =
+    [Quantity::new(["strength_share", ""], "", "Share of strength, worst section", |block| block.strength_share)];
+
+/// Shares of strength above this are shown as it.
+const SHARE_MAX: f64 = 1e6;
+
 /// Displacement (m) and velocity (m/s) of a monitor.
 pub type MonitorState = (Vector, Vector);
 
@@ -146,6 +157,18 @@ pub const MONITOR_QUANTITIES: [Quantity<MonitorState>; 4] = [
 ];
 
 impl Simulation {
+    /// The numbers of blocks that files of this model show.
+    pub fn block_quantities(&self) -> impl Iterator<Item = &'static Quantity<BlockState>> {
+        let of_strength = self.model().breaking.iter().flat_map(|_| &STRENGTH_QUANTITIES);
+        BLOCK_QUANTITIES.iter().chain(of_strength)
+    }
+
+    /// The share of its strength that the worst section of a block has.
+    pub fn strength_share(&self, block: BlockId) -> f64 {
+        let of = self.state().worst_sections.get(block.index()).filter(|_| !self.state().removed[block]);
+        of.map_or(0.0, |worst| worst.share.min(SHARE_MAX))
+    }
+
     /// The state of every block, excavated ones included, by id.
     pub fn block_states(&self) -> Vec<BlockState> {
         self.blocks().to_vec()
@@ -199,7 +222,7 @@ impl Simulation {
 
     /// The block with a number that hosts see, if there is one now.
     pub fn block_labelled(&self, label: u32) -> Option<BlockId> {
-        self.model().labels.iter().position(|&own| own == label).map(BlockId::new)
+        self.model().block_labelled(label)
     }
 
     /// The contacts of the last step at their places now, worked out at the first look after a step. Before the first
@@ -304,6 +327,7 @@ impl Simulation {
             area,
             mass: model.mass_matrix.total[block],
             kinetic_energy: if removed { 0.0 } else { kinetic },
+            strength_share: self.strength_share(block),
             ..BlockState::default()
         }
     }

@@ -111,6 +111,11 @@ impl Simulation {
         &self.built.model
     }
 
+    /// The model as built, for a caller who changes the state beside it.
+    pub(crate) fn shared_model(&self) -> Arc<Built> {
+        self.built.clone()
+    }
+
     /// The state now.
     pub fn state(&self) -> &State {
         &self.state

@@ -38,6 +38,7 @@ fn carry_over(
         state.worst_sections = worst_sections(lineage, was);
     }
     state.sections = lineage.sections.iter().map(|section| section.and_then(|k| was.sections[k])).collect();
+    state.cuts.extend(broken);
     // The stage that begins takes its own.
     state.stage_displacement.clear();
     state.stage_force.clear();

@@ -53,7 +53,7 @@ pub fn carry_contacts(
         return;
     }
     let carry = Carry { lineage, old, was, new, before: Before::new(old, was) };
-    let softens = state.laws.iter().any(|law| law.softening.is_some());
+    let softens = step::has_bonds(new, state);
     let mut seeds = carry.kept();
     seeds.extend(carry.touching(state));
     seeds.sort_by_key(|(history, _)| key(history));
@@ -64,10 +64,7 @@ pub fn carry_contacts(
     let (_, ahead) = step::look_ahead(new, AT_REST, state, true);
     let load = |contact: &VertexEdge| Some((*contact, carry.load(contact, &seeds)?));
     let mut loaded: Vec<(VertexEdge, Loaded)> = ahead.contacts.iter().filter_map(load).collect();
-    carry.keep_sums(&mut loaded);
-    for (contact, loaded) in loaded.iter_mut().filter(|(_, loaded)| loaded.shares.is_some()) {
-        settle(contact, new, &mut loaded.history);
-    }
+    carry.hand_over(&mut loaded);
     if let Some(broken) = broken {
         carry.balance(broken, &mut loaded);
     }
@@ -216,21 +213,18 @@ impl Carry<'_> {
         if self.is_of_cut(face) { Some(self.on_new_face(contact, face)) } else { self.on_old_face(contact, face) }
     }
 
-    /// Gives a contact that goes on with another length, beside a node that the cut has made, its part of the forces.
+    /// Node and side of a contact before the cut, if the cut has left both as they were.
+    fn was(&self, contact: &VertexEdge) -> Option<(NodeId, SideId)> {
+        self.lineage.nodes[contact.history.node].zip(self.lineage.sides[contact.history.side])
+    }
+
+    /// Gives a contact that goes on with another gap or stiffness, beside a node that the cut has made, the rest length
+    /// at which its spring is closed as far as it was.
     fn go_on(&self, contact: &VertexEdge, history: &mut ContactHistory) {
-        let ContactHistory { node, side, .. } = contact.history;
-        let was = self.lineage.nodes[node].zip(self.lineage.sides[side]);
-        let was = was.and_then(|was| self.before.springs.get(&was));
-        if was == Some(&(contact.gap, contact.stiffness)) {
-            return;
+        let was = self.was(contact).and_then(|was| self.before.springs.get(&was));
+        if let Some(&(gap_before, _)) = was.filter(|was| **was != (contact.gap, contact.stiffness)) {
+            history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) - gap_before };
         }
-        if let Some((_, stiffness)) = was {
-            let share = contact.stiffness[0] / stiffness[0];
-            history.normal_force *= share;
-            history.shear_force *= share;
-            history.filtered_normal *= share;
-        }
-        settle(contact, self.new, history);
     }
 
     /// A contact on a face that the cut has made bears the stress that the rock has there.
@@ -313,7 +307,7 @@ impl Carry<'_> {
         [0, 1, 2].map(|k| stresses.iter().map(|stress| stress[k]).sum::<f64>() / count)
     }
 
-    /// A contact on a face that was there takes its part of what the contacts about it have borne.
+    /// A contact on a face that was there, which is to take its part of what the contacts about it have borne.
     fn on_old_face(&self, contact: &VertexEdge, face: Face) -> Option<Loaded> {
         let at = self.new.boundary.reference[contact.point];
         let is_of_face = |was: &&Bearing| was.contact.normal.dot(&contact.normal) > ONE_FACE;
@@ -325,19 +319,15 @@ impl Carry<'_> {
             let [near, far] = [first.at, other.at].map(|place| (place - at).norm());
             near / (near + far)
         });
-        let traction = |of: fn(&ContactHistory) -> f64| {
-            let at = |was: &Bearing| of(&was.contact.history) / was.contact.length;
-            at(first) * (1.0 - share) + beyond.map_or(0.0, |other| at(other) * share)
-        };
         let ContactHistory { node, side, edge, share: strength, .. } = contact.history;
         let mut history = ContactHistory {
             node,
             side,
             edge,
             share: strength,
-            normal_force: traction(|history| history.normal_force) * contact.length,
-            shear_force: traction(|history| history.shear_force) * contact.length,
-            filtered_normal: traction(|history| history.filtered_normal) * contact.length,
+            normal_force: 0.0,
+            shear_force: 0.0,
+            filtered_normal: 0.0,
             trend: [0.0; 2],
             ..first.contact.history
         };
@@ -349,38 +339,73 @@ impl Carry<'_> {
             let rest = |of: &Bearing| of.contact.history.unloaded.gap();
             let rest = rest(first) * (1.0 - share) + beyond.map_or(0.0, |other| rest(other) * share);
             let pull = if history.normal_force < 0.0 { f64::NEG_INFINITY } else { 0.0 };
+            let traction = |of: fn(&ContactHistory) -> f64| {
+                let at = |was: &Bearing| of(&was.contact.history) / was.contact.length;
+                at(first) * (1.0 - share) + beyond.map_or(0.0, |other| at(other) * share)
+            };
             history.normal_force = (contact.stiffness[0] * (rest - gap(contact))).max(pull);
+            history.shear_force = traction(|history| history.shear_force) * contact.length;
+            history.filtered_normal = traction(|history| history.filtered_normal) * contact.length;
             history.unloaded = Unloaded { offset: 0.0, rest };
             history.sheared = history.shear_force / contact.stiffness[1];
+        } else {
+            // As far closed as those that it takes the place of, whose forces and lengths may just have had a peak.
+            let before = first.contact.gap * (1.0 - share) + beyond.map_or(0.0, |other| other.contact.gap * share);
+            history.unloaded = Unloaded { offset: 0.0, rest: gap(contact) - before };
         }
         Some(Loaded { history, bond, shares: (!is_spring).then_some(face) })
     }
 
-    /// Spreads what contacts that take the place of others bear less than these over them by their lengths, so that
-    /// each face carries what it did.
-    fn keep_sums(&self, loaded: &mut [(VertexEdge, Loaded)]) {
-        let forces = |history: &ContactHistory| Vector::new(history.normal_force, history.shear_force);
-        let mut missing: BTreeMap<Face, (Vector, f64)> = BTreeMap::new();
-        for (contact, loaded) in &*loaded {
+    /// Hands the forces of contacts that have gone, and the part that those give away which have become shorter beside
+    /// a node that the cut has made, to the contacts that take their place on the same face: to the nearest ones on
+    /// both sides, as a beam on two supports does. So each face carries what it did, about where it did, and none of
+    /// its contacts pulls that has not pulled before.
+    fn hand_over(&self, loaded: &mut [(VertexEdge, Loaded)]) {
+        let mut takers: BTreeMap<Face, Vec<usize>> = BTreeMap::new();
+        let mut kept: BTreeMap<(NodeId, SideId), usize> = BTreeMap::new();
+        for (k, (contact, loaded)) in loaded.iter().enumerate() {
             if let Some(face) = loaded.shares {
-                missing.entry(face).or_default().1 += contact.length;
+                takers.entry(face).or_default().push(k);
             }
+            kept.extend(self.was(contact).map(|was| (was, k)));
         }
-        for (face, (sum, _)) in &mut missing {
-            *sum = self.before.faces[face].iter().map(|was| forces(&was.contact.history)).sum();
-        }
-        for (contact, loaded) in &*loaded {
-            if let Some((sum, _)) = missing.get_mut(&self.face(contact)) {
-                *sum -= forces(&loaded.history);
+        for (face, takers) in &takers {
+            for was in &self.before.faces[face] {
+                let own = kept.get(&key(&was.contact.history)).copied();
+                let stays = own.map_or(0.0, |k| (loaded[k].0.stiffness[0] / was.contact.stiffness[0]).min(1.0));
+                if let Some(k) = own {
+                    add_share(&mut loaded[k].1.history, &was.contact.history, stays - 1.0);
+                }
+                for (k, share) in self.takers_of(was, takers, loaded).into_iter().flatten() {
+                    add_share(&mut loaded[k].1.history, &was.contact.history, share * (1.0 - stays));
+                }
             }
-        }
-        for (contact, loaded) in loaded {
-            let Some((sum, length)) = loaded.shares.map(|face| missing[&face]) else { continue };
-            let own = sum * (contact.length / length);
-            loaded.history.normal_force += own.x;
-            loaded.history.shear_force += own.y;
         }
     }
+
+    /// The contacts that take the force of one before the cut, with their shares of it.
+    fn takers_of(&self, was: &Bearing, takers: &[usize], loaded: &[(VertexEdge, Loaded)]) -> [Option<(usize, f64)>; 2] {
+        let way = |k: usize| self.new.boundary.reference[loaded[k].0.point] - was.at;
+        let is_of_face = |k: &usize| loaded[*k].0.normal.dot(&was.contact.normal) > ONE_FACE;
+        let nearest = |among: &mut dyn Iterator<Item = usize>| {
+            among.min_by(|&a, &b| way(a).norm().total_cmp(&way(b).norm()).then(a.cmp(&b)))
+        };
+        let first = nearest(&mut takers.iter().copied().filter(is_of_face)).or(nearest(&mut takers.iter().copied()));
+        let Some(first) = first else { return [None; 2] };
+        let is_beyond = |k: &usize| way(*k).dot(&way(first)) < 0.0;
+        let Some(beyond) = nearest(&mut takers.iter().copied().filter(is_of_face).filter(is_beyond)) else {
+            return [Some((first, 1.0)), None];
+        };
+        let [near, far] = [first, beyond].map(|k| way(k).norm());
+        [Some((first, far / (near + far))), Some((beyond, near / (near + far)))]
+    }
+}
+
+/// Adds a share of the forces of one contact to another.
+fn add_share(history: &mut ContactHistory, of: &ContactHistory, share: f64) {
+    history.normal_force += of.normal_force * share;
+    history.shear_force += of.shear_force * share;
+    history.filtered_normal += of.filtered_normal * share;
 }
 
 /// Gap between node and edge of a contact (m), wherever its spring is unloaded.

@@ -3,7 +3,7 @@
 use crate::contact::{BoltSegment, EdgeId, NodeId, Section, SideId, Support};
 use crate::cover::BlockId;
 use crate::geometry::{Point, segment};
-use crate::state::Model;
+use crate::state::{Model, PortKind};
 
 use super::parents::Parents;
 use super::places::{nodes, sides};
@@ -43,7 +43,7 @@ impl Lineage {
             )
         })?;
         Ok(Self {
-            heirs: parents.heirs(&old.covers, &new.covers),
+            heirs: parents.heirs(&old.covers, &new.covers, &of_ports(old, new)),
             supports: supports(old, new, &parents, tolerance)?,
             bolts: new
                 .bolts
@@ -59,9 +59,15 @@ impl Lineage {
     }
 
     /// Numbers of the blocks after the cut, as hosts see them.
-    pub fn labels(&self, old: &Model, new: &Model) -> Vec<u32> {
-        self.parents.labels(&old.labels, &old.covers, &new.covers)
+    pub fn labels(&self, old: &Model) -> Vec<u32> {
+        self.parents.labels(&old.labels, &self.heirs)
     }
+}
+
+/// The blocks of ports before, and the parts that hold the points by which the case names them.
+fn of_ports(old: &Model, new: &Model) -> Vec<(BlockId, BlockId)> {
+    let ports = old.ports.iter().zip(&new.ports).filter(|(port, _)| port.kind == PortKind::Block);
+    ports.map(|(was, port)| (was.block, port.block)).collect()
 }
 
 /// Where a support holds the rock (m).

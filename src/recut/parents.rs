@@ -39,25 +39,28 @@ impl Parents {
         Ok(Self { elements, covers, blocks })
     }
 
-    /// Numbers that hosts see of the blocks `fine`, where those of the blocks `coarse` are `labels`: the part with the
-    /// reference point of a block keeps its number, others take the next free ones.
-    pub fn labels(&self, labels: &[u32], coarse: &Covers, fine: &Covers) -> Vec<u32> {
-        let mut own = vec![None; fine.block_count()];
-        for (block, heir) in coarse.blocks().zip(self.heirs(coarse, fine)) {
-            own[heir] = Some(labels[block]);
+    /// Numbers that hosts see of the blocks `fine`, where those of the blocks `coarse` are `labels`: its heir keeps the
+    /// number of a block, other parts take the next free ones.
+    pub fn labels(&self, labels: &[u32], heirs: &[BlockId]) -> Vec<u32> {
+        let mut own = vec![None; self.blocks.len()];
+        for (&label, &heir) in labels.iter().zip(heirs) {
+            own[heir] = Some(label);
         }
         let mut next = labels.len() as u32..;
         own.into_iter().map(|label| label.unwrap_or_else(|| next.next().unwrap_or_default())).collect()
     }
 
-    /// The block `fine` that each block `coarse` goes on as: that with its reference point.
-    pub fn heirs(&self, coarse: &Covers, fine: &Covers) -> Vec<BlockId> {
+    /// The block `fine` that each block `coarse` goes on as: the first that is `wanted` for it, or else that with its
+    /// reference point.
+    pub fn heirs(&self, coarse: &Covers, fine: &Covers, wanted: &[(BlockId, BlockId)]) -> Vec<BlockId> {
         let mut heirs = vec![None; coarse.block_count()];
         for (block, &parent) in fine.blocks().zip(&self.blocks) {
             heirs[parent].get_or_insert(block);
         }
         for block in coarse.blocks() {
-            let holder = fine.element_at(coarse.point_inside(block)).map(|e| fine.element_block[e]);
+            let wanted = wanted.iter().find(|(of, heir)| *of == block && self.blocks[*heir] == block);
+            let inside = || fine.element_at(coarse.point_inside(block)).map(|e| fine.element_block[e]);
+            let holder = wanted.map(|(_, heir)| *heir).or_else(inside);
             let holder = holder.filter(|&holder| self.blocks[holder] == block);
             heirs[block] = holder.or(heirs[block]);
         }

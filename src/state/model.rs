@@ -228,8 +228,8 @@ pub struct Model {
     pub mass_matrix: MassMatrix,
     /// 2π·cs/max(√A, h) of each block (1/s): what the damping ratio multiplies.
     pub block_frequency: Vec<f64>,
-    /// Number of each block as hosts see it: its index, unless a stage has cut the rock. The part of a block that
-    /// holds its reference point keeps the number.
+    /// Number of each block as hosts see it: its index, unless the rock has been cut. The part of a block that holds
+    /// the point of its port, or else its reference point, keeps the number.
     pub labels: Vec<u32>,
     /// Boundary as contact sees it.
     pub boundary: Boundary,
@@ -298,6 +298,13 @@ pub struct Model {
 }
 
 impl Model {
+    /// The block with a number that hosts see, if there is one.
+    pub fn block_labelled(&self, label: u32) -> Option<BlockId> {
+        let is_own = self.labels.get(label as usize) == Some(&label);
+        let place = if is_own { Some(label as usize) } else { self.labels.iter().position(|own| *own == label) };
+        place.map(BlockId::new)
+    }
+
     /// Data that the contacts of a step share: the boundary at its positions, joint laws, and what the selection of the
     /// contacts has found of their friction.
     pub fn contact_setting<'a>(

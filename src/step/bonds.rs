@@ -2,20 +2,23 @@
 //! fracture.
 
 use crate::contact::{
-    BondHistory, ContactHistory, ContactSetting, ContactState, Damaged, Failure, Hold, JointLaw, Release, SectionBond,
+    BondHistory, ContactHistory, ContactSetting, ContactState, Damaged, Failure, Hold, Release, SectionBond,
     SectionForces, SectionId, Sections, VertexEdge,
 };
 use crate::geometry::Vector;
-use crate::state::{Counters, Ledger, Model};
+use crate::state::{Counters, Ledger, Model, State};
 
 use super::Substep;
 
 /// Steps in which a section lets go at least, so that its neighbours feel no jump.
 const RELEASE_STEPS: f64 = 10.0;
 
-/// Whether joints of these laws soften, so that the state keeps the damage of their bonds.
-pub fn has_bonds(laws: &[JointLaw]) -> bool {
-    laws.iter().any(|law| law.softening.is_some())
+/// Whether joints soften, so that the state keeps the damage of their bonds: by a law of the case, or as the cracks of
+/// rock that has broken, whose laws come after all others.
+pub fn has_bonds(model: &Model, state: &State) -> bool {
+    let of_cracks = model.breaking.as_ref().map_or(0, |breaking| breaking.rocks.iter().flatten().count());
+    let of_case = &state.laws[..state.laws.len() - of_cracks];
+    !state.cuts.is_empty() || of_case.iter().any(|law| law.softening.is_some())
 }
 
 /// Contacts of a sub-step whose bonds are damaged, with what they leave for the next one.

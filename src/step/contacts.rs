@@ -107,7 +107,7 @@ pub fn find_contacts(
         dt: reach.ahead,
         impacts: has_impacts.then(|| &model.mass_matrix.inverse_total[..]),
         first: state.step == 0,
-        softens: has_bonds(&state.laws),
+        softens: has_bonds(model, state),
         bonds: &state.bonds,
         sections: &model.sections,
         in_situ: model.in_situ.as_ref(),

@@ -19,6 +19,7 @@ mod settle;
 mod substep;
 
 pub use applied::{acceleration, push_forces};
+pub use bonds::has_bonds;
 pub use contacts::{Reach, find_contacts, locate, search};
 pub use friction::{delay_friction, delay_of};
 pub use guard::{Failure, StepError};

@@ -244,18 +244,22 @@ impl Case {
     pub fn refuse_cuts(&self, who: &str) -> Result<(), Invalid> {
         if let Some((name, _)) = self.rocks.iter().find(|(_, rock)| rock.fracture.is_some()) {
             let key = Key::root().field("rock").field(name).field("fracture");
-            let message =
-                format!("is for `enmm run`, and {who} cannot follow blocks that break; remove it from the case");
+            let message = format!("{who} cannot follow blocks that break; use `enmm fos`, or remove it from the case");
             return fail(&key, message);
         }
         let cut = self.stages.iter().position(|stage| !stage.cuts.is_empty());
         cut.map_or(Ok(()), |k| {
             let message = format!(
-                "is for `enmm run`, and {who} cannot follow blocks that a stage parts: draw the line as a joint from \
-                 the start, with a law that holds until a stage switches it, or remove it"
+                "{who} cannot follow blocks that a stage parts: draw the line as a joint from the start, with a law \
+                 that holds until a stage switches it, or remove it"
             );
             Err(Invalid { key: format!("stage[{k}].cut[0]"), message })
         })
+    }
+
+    /// Whether blocks can become more: rock breaks, or a stage cuts it.
+    pub fn has_cuts(&self) -> bool {
+        self.breaks() || self.stages.iter().any(|stage| !stage.cuts.is_empty())
     }
 
     /// Whether the rock is whole: no joint cuts it, and no bolt holds it.

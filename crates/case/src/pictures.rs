@@ -34,6 +34,8 @@ words! {
         DisplacementContours = "displacement_contours",
         /// `stage1_mean_stress_contours.png`: contours of the mean stress in the plane, smoothed within blocks.
         MeanStressContours = "mean_stress_contours",
+        /// `stage1_strength.png`: share of strength of the worst section of each block, of rock that can break.
+        Strength = "strength",
     }
 }
 
@@ -49,13 +51,14 @@ pub enum Pictures {
 }
 
 /// Pictures of a run that names none.
-const USUAL: [PictureKind; 6] = [
+const USUAL: [PictureKind; 7] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
     PictureKind::DisplacementContours,
     PictureKind::Joints,
     PictureKind::MeanStressContours,
+    PictureKind::Strength,
 ];
 
 impl Pictures {

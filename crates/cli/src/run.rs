@@ -171,9 +171,9 @@ fn table(summary: &Summary, directory: &Path) -> String {
     for of in summary.breaks.iter().take(BREAKS) {
         let [[x0, y0], [x1, y1]] = of.section.ends;
         let value = format!(
-            "from ({x0:.2}, {y0:.2}) to ({x1:.2}, {y1:.2}) m after {} s, the section {}; block {} parts off",
+            "from ({x0:.2}, {y0:.2}) to ({x1:.2}, {y1:.2}) m after {} s, {}; block {} parts off",
             rounded(of.time),
-            of.section.failure,
+            of.section.how(),
             of.part
         );
         row(&format!("block {} broke", of.section.block), value);
@@ -184,8 +184,10 @@ fn table(summary: &Summary, directory: &Path) -> String {
     if let Some(worst) = summary.worst_sections.first() {
         let [[x0, y0], [x1, y1]] = worst.ends;
         let value = format!(
-            "block {}: from ({x0:.2}, {y0:.2}) to ({x1:.2}, {y1:.2}) m at {:.2} of the strength of the rock",
-            worst.block, worst.share
+            "block {}: from ({x0:.2}, {y0:.2}) to ({x1:.2}, {y1:.2}) m at {:.2} of the strength of the rock, {}",
+            worst.block,
+            worst.share,
+            worst.how()
         );
         row("nearest to breaking", value);
     }

@@ -6,7 +6,7 @@
 //! | what | type | numbers |
 //! |---|---|---|
 //! | elements | [`Snapshot`] | [`STRESS_QUANTITIES`] |
-//! | blocks | [`BlockState`] | [`BLOCK_QUANTITIES`] |
+//! | blocks | [`BlockState`] | [`BLOCK_QUANTITIES`], [`STRENGTH_QUANTITIES`] |
 //! | joints | [`JointPiece`] | [`JOINT_QUANTITIES`] |
 //! | bolts | [`BoltLine`] | [`BOLT_QUANTITIES`] |
 //! | supports | [`SupportPoint`] | |
@@ -26,6 +26,7 @@ mod bonds;
 mod edges;
 mod joints;
 mod loops;
+mod sections;
 mod snapshot;
 pub mod stress;
 mod supports;
@@ -35,7 +36,7 @@ mod water;
 pub use enmm::cosimulation::{PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use enmm::model::{
     BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, Ledger, MONITOR_QUANTITIES, MonitorState,
-    Quantity, StepReport,
+    Quantity, STRENGTH_QUANTITIES, StepReport,
 };
 
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
@@ -43,6 +44,7 @@ pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
 pub use joints::{JOINT_QUANTITIES, JointPiece, Joints, SlipSince};
 pub use loops::{loops, node_loops};
+pub use sections::{RockSection, broken_sections, rock_sections};
 pub use snapshot::{Boundary, Polygons, Snapshot, moved_since, references};
 pub use stress::STRESS_QUANTITIES;
 pub use supports::{SupportKind, SupportPoint, supports};

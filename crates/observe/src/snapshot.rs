@@ -57,6 +57,8 @@ pub struct Snapshot {
     pub stress_zz: Vec<f64>,
     /// Plastic strain √(⅔ εp:εp) of each element; empty when no rock yields.
     pub plastic_strain: Vec<f64>,
+    /// Share of its strength that the worst section of its block has, of each element; empty when no rock breaks.
+    pub strength_share: Vec<f64>,
     /// Block of each element.
     pub block: Vec<u32>,
     /// Rock of each element.
@@ -110,6 +112,9 @@ impl Snapshot {
             snapshot.stress_zz.push(stress_out_of_plane(simulation, e, stress));
             if !state.plastic.is_empty() {
                 snapshot.plastic_strain.push(model.plastic_strain_under(state, e, &patches));
+            }
+            if model.breaking.is_some() {
+                snapshot.strength_share.push(simulation.strength_share(covers.element_block[e]));
             }
             snapshot.block.push(model.labels[covers.element_block[e]]);
             snapshot.rock.push(u32::from(model.element_rock[e]));

@@ -27,6 +27,7 @@ mod stage;
 mod stage_axis;
 #[cfg(feature = "searches")]
 mod stereonet;
+mod strength;
 mod svg;
 
 use std::io;
@@ -52,6 +53,7 @@ pub use stage::{
 pub use stage_axis::StageStart;
 #[cfg(feature = "searches")]
 pub use stereonet::{Projection, Stereonet};
+pub use strength::strength_picture;
 
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]

@@ -330,7 +330,7 @@ impl<'a> StageSheet<'a> {
     }
 
     /// Fills the elements by steps of the scale.
-    fn fill(&mut self, step: impl Fn(usize) -> usize) {
+    pub fn fill(&mut self, step: impl Fn(usize) -> usize) {
         let colours: Vec<_> = (0..SCALE_STEPS).map(scale).collect();
         let (snapshot, view) = (self.stage.snapshot, self.view);
         self.sheet.clipped(&view.area, |sheet| draw_filled(sheet, &snapshot.elements, &view, &colours, step));

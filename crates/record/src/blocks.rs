@@ -3,8 +3,9 @@
 use std::io;
 use std::path::Path;
 
+use enmm::model::Simulation;
 use enmm_io::files::{at_path, write_atomic};
-use enmm_observe::{BLOCK_QUANTITIES, BlockState, Quantity};
+use enmm_observe::{BlockState, Quantity};
 
 /// Columns before those of the numbers.
 const FLAGS: [&str; 4] = ["id", "fixed", "removed", "detached"];
@@ -13,30 +14,31 @@ const FLAGS: [&str; 4] = ["id", "fixed", "removed", "detached"];
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
-pub fn write_blocks(path: &Path, blocks: &[BlockState]) -> io::Result<()> {
+pub fn write_blocks(path: &Path, simulation: &Simulation) -> io::Result<()> {
+    let numbers: Vec<&Quantity<BlockState>> = simulation.block_quantities().collect();
     let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(header()).map_err(io::Error::from).map_err(at_path(path))?;
-    for block in blocks {
-        csv.write_record(row(block)).map_err(io::Error::from).map_err(at_path(path))?;
+    csv.write_record(header(&numbers)).map_err(io::Error::from).map_err(at_path(path))?;
+    for block in simulation.blocks() {
+        csv.write_record(row(block, &numbers)).map_err(io::Error::from).map_err(at_path(path))?;
     }
     let bytes = csv.into_inner().map_err(csv::IntoInnerError::into_error).map_err(at_path(path))?;
     write_atomic(path, &bytes)
 }
 
-fn header() -> Vec<String> {
-    let number = |q: &Quantity<BlockState>| match q.unit {
+fn header(numbers: &[&Quantity<BlockState>]) -> Vec<String> {
+    let number = |q: &&Quantity<BlockState>| match q.unit {
         "" => q.name.to_owned(),
         unit => format!("{} [{unit}]", q.name),
     };
-    FLAGS.into_iter().map(str::to_owned).chain(BLOCK_QUANTITIES.iter().map(number)).collect()
+    FLAGS.into_iter().map(str::to_owned).chain(numbers.iter().map(number)).collect()
 }
 
-fn row(block: &BlockState) -> Vec<String> {
+fn row(block: &BlockState, numbers: &[&Quantity<BlockState>]) -> Vec<String> {
     let flag = |flag: bool| u8::from(flag).to_string();
     let flags = [block.id.to_string(), flag(block.fixed), flag(block.removed), flag(block.detached)];
-    let number = |q: &Quantity<BlockState>| match q.is_count {
+    let number = |q: &&Quantity<BlockState>| match q.is_count {
         true => format!("{:.0}", (q.get)(block)),
         false => format!("{:?}", (q.get)(block)),
     };
-    flags.into_iter().chain(BLOCK_QUANTITIES.iter().map(number)).collect()
+    flags.into_iter().chain(numbers.iter().map(number)).collect()
 }

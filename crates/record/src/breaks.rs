@@ -1,5 +1,7 @@
 //! Blocks that have broken, and those that are nearest to it, for summaries.
 
+use enmm_picture::si_text;
+use enmm_report::{Break, Fact, Note};
 use serde::Serialize;
 
 use enmm::model::Simulation;
@@ -19,7 +21,7 @@ pub struct SectionRecord {
     pub length: f64,
     /// Share of its strength.
     pub share: f64,
-    /// How it fails: `opens` or `slides`.
+    /// How it fails: `bends`, `opens` (by tension), `slides` (by shear) or `splits` (from a core).
     pub failure: &'static str,
     /// Normal force (N/m), tension positive.
     pub normal: f64,
@@ -53,6 +55,8 @@ impl SectionRecord {
         let failure = match failure {
             SectionFailure::Opens => "opens",
             SectionFailure::Slides => "slides",
+            SectionFailure::Bends => "bends",
+            SectionFailure::Splits => "splits",
         };
         let Resultants { normal, shear, moment } = *of;
         Self { block, ends, length, share, failure, normal, shear, moment, barred: false }
@@ -62,6 +66,33 @@ impl SectionRecord {
         let ends = worst.ends.map(|end| [end.x, end.y]);
         let record = Self::new(block, worst.share, ends, (worst.failure, &worst.carries));
         Self { barred: worst.barred, ..record }
+    }
+
+    /// For the page: which block it is, how it would fail, where, and what it carries.
+    pub(crate) fn note(&self) -> Note {
+        let [[x0, y0], [x1, y1]] = self.ends;
+        let rows = [
+            ("Block", self.block.to_string()),
+            ("Share of strength", format!("{:.2}", self.share)),
+            ("How", self.how().to_owned()),
+            ("From", format!("({x0:.2}, {y0:.2}) m")),
+            ("To", format!("({x1:.2}, {y1:.2}) m")),
+            ("Normal force, tension positive", si_text(self.normal, "N/m")),
+            ("Shear force", si_text(self.shear, "N/m")),
+            ("Bending moment", si_text(self.moment, "N")),
+        ];
+        let rows = rows.into_iter().map(|(name, value)| Fact { name: name.to_owned(), value });
+        Note::Facts { title: "Nearest to breaking".to_owned(), rows: rows.collect() }
+    }
+
+    /// How it fails in words.
+    pub fn how(&self) -> &'static str {
+        match self.failure {
+            "bends" => "by bending",
+            "slides" => "by shear",
+            "splits" => "from its core",
+            _ => "by tension",
+        }
     }
 
     /// Those of the blocks nearest to breaking, the worst first.
@@ -79,6 +110,13 @@ impl SectionRecord {
 }
 
 impl BreakRecord {
+    /// For the page.
+    pub(crate) fn note(&self) -> Break {
+        let SectionRecord { block, ends, share, normal, shear, moment, .. } = self.section;
+        let failure = self.section.how().to_owned();
+        Break { at: self.time, block, part: self.part, failure, ends, share, normal, shear, moment }
+    }
+
     /// All of a run so far.
     pub(crate) fn all(simulation: &Simulation) -> Vec<Self> {
         let of = |cut: &Cut| {

@@ -13,6 +13,7 @@ use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note};
 
 use crate::blocks::write_blocks;
+use crate::breaks::SectionRecord;
 use crate::film::{Film, Opening, numbers};
 use crate::flow::{FLOW, FlowRecord, write_flow};
 use crate::history::HistoryWriter;
@@ -174,6 +175,10 @@ impl Recorder {
     pub(crate) fn take_up(&mut self, simulation: &Simulation) {
         self.plan = Plan::of(simulation);
         self.row = None;
+        let breaks = simulation.cuts().len();
+        if std::mem::replace(&mut self.breaks, breaks) != breaks {
+            self.joints = Joints::of(simulation);
+        }
     }
 
     /// Notes in the film that the stage begins, or how it ended.
@@ -404,7 +409,7 @@ impl Recorder {
     pub fn close(&mut self, simulation: &Simulation, closing: Closing) -> io::Result<Summary> {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
-        write_blocks(&self.directory.join("blocks.csv"), &simulation.block_states())?;
+        write_blocks(&self.directory.join("blocks.csv"), simulation)?;
         let flows = FlowRecord::all(simulation);
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;
@@ -423,6 +428,10 @@ impl Recorder {
         let time = simulation.time();
         let note = Note::Verdict { text: verdict.text.clone(), failed: verdict.failed };
         self.film.note(time, &note)?;
+        self.film.note_breaks(simulation, time)?;
+        if let Some(worst) = SectionRecord::worst(simulation).first() {
+            self.film.note(time, &worst.note())?;
+        }
         self.close_film(time, status, failure, doubt.as_ref())?;
         let record = RunRecord {
             case_file: loaded.source.file(),
@@ -500,8 +509,13 @@ fn film(
     warnings: &[String],
 ) -> io::Result<Film> {
     let columns = rows::columns(simulation.case());
-    let opening =
-        Opening { command, film: directory.join(FILM), axis: Axis::time(), numbers: numbers(), columns: &columns };
+    let opening = Opening {
+        command,
+        film: directory.join(FILM),
+        axis: Axis::time(),
+        numbers: numbers(simulation),
+        columns: &columns,
+    };
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;
     for text in warnings {
         film.note(simulation.time(), &Note::Warning { text: text.clone() })?;

@@ -95,8 +95,8 @@ pub struct Recording {
     /// Time (s) from which on outputs are kept back.
     held_from: f64,
     marks: Vec<Mark>,
-    /// Displacements of the covers (m) at the start of stages that began while this recorded.
-    starts: Vec<(u32, Vec<Vector>)>,
+    /// Displacements of the covers (m) at the start of stages that began while this recorded, and the breaks before.
+    starts: Vec<(u32, usize, Vec<Vector>)>,
     /// The last step of the stage in progress that was seen.
     seen: Option<u64>,
     /// Events that warnings have been given of.
@@ -207,8 +207,8 @@ impl Recording {
         self.recorder.begin_stage(simulation)?;
         let stage = simulation.state().stage;
         self.seen = None;
-        self.starts.retain(|(other, _)| *other < stage);
-        self.starts.push((stage, self.recorder.progress.started.clone()));
+        self.starts.retain(|(other, ..)| *other < stage);
+        self.starts.push((stage, simulation.cuts().len(), self.recorder.progress.started.clone()));
         self.mark(stage, None);
         Ok(())
     }
@@ -282,6 +282,7 @@ impl Recording {
         if step == 0 {
             self.check_process()?;
         }
+        self.recorder.follow_breaks(simulation);
         self.show_due(simulation, false)?;
         // Steps from between two points of the grid are not seen, so that a row may have been due meanwhile.
         let first = self.seen.map_or(step, |seen| seen + 1).min(step);
@@ -296,6 +297,7 @@ impl Recording {
     }
 
     fn look_after(&mut self, simulation: &Simulation, report: &StepReport) -> io::Result<()> {
+        self.recorder.follow_breaks(simulation);
         let is_row = self.recorder.after_step(simulation, report)?;
         if is_row {
             self.mark(simulation.state().stage, self.seen);
@@ -351,9 +353,9 @@ impl Recording {
         progress.done.truncate(state.stage as usize);
         let dynamic = progress.done.iter().filter(|stage| stage.kind == StageKind::Dynamic).count();
         progress.permanent.truncate(dynamic);
-        let started = self.starts.iter().find(|(stage, _)| *stage == state.stage);
+        let started = self.starts.iter().find(|(stage, ..)| *stage == state.stage);
         progress.started = match started {
-            Some((_, started)) => started.clone(),
+            Some((_, breaks, started)) => simulation.after_breaks(*breaks, started),
             None if state.stage_displacement.is_empty() => state.displacement.clone(),
             None => Vec::new(),
         };

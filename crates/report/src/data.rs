@@ -38,6 +38,9 @@ pub struct BlockNumber {
     pub unit: String,
     /// Meaning in a few words.
     pub meaning: String,
+    /// Smallest and largest value of its colours, where these do not follow from the film.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<[u32; 2]>,
 }
 
 /// Axis of the slider.
@@ -221,6 +224,8 @@ pub enum Note {
         /// The warning.
         text: String,
     },
+    /// A block has broken in two.
+    Break(Break),
     /// Trials of a factor of safety.
     Trials(TrialTable),
     /// Blocks to mark on the slope, such as a failing mass.
@@ -253,6 +258,29 @@ pub enum Note {
         /// `finished`, `interrupted`, or why it failed.
         status: String,
     },
+}
+
+/// A block that has broken in two.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Break {
+    /// When (s).
+    pub at: f64,
+    /// The block.
+    pub block: u32,
+    /// Number of the part that is new; a later note of the same part says the same.
+    pub part: u32,
+    /// How the section failed, such as `bends`.
+    pub failure: String,
+    /// Ends of the section in the reference configuration (m).
+    pub ends: [[f64; 2]; 2],
+    /// Share of its strength that it had.
+    pub share: f64,
+    /// Normal force (N/m, tension positive).
+    pub normal: f64,
+    /// Shear force (N/m).
+    pub shear: f64,
+    /// Bending moment (N).
+    pub moment: f64,
 }
 
 /// A row of [`Note::Facts`] or [`Note::Changes`].

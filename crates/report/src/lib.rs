@@ -21,8 +21,8 @@ mod writer;
 
 pub use block::{MOTION, QUANTUM};
 pub use data::{
-    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, Fact, Frame, Head, Marked, MonitorFrame,
-    MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Break, Column, EdgeState, Fact, Frame, Head, Marked,
+    MonitorFrame, MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable,
 };
 pub use error::FilmError;
 pub use page::{edit_page, live_page, write_page};

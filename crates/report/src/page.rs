@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use enmm_io::files::{Unfinished, open_result};
 
-use crate::chunk::{Chunks, MAGIC};
+use crate::chunk::{Chunks, Kind, MAGIC};
 use crate::error::FilmError;
 
 const EDITOR: &str = include_str!("../viewer/editor.html");
@@ -25,6 +25,11 @@ const SCRIPTS: [&str; 8] = [
     include_str!("../viewer/viewer.js"),
 ];
 
+/// The script of films that tell of blocks which have broken, behind the others.
+const BREAKS: &str = include_str!("../viewer/breaks.js");
+/// How a note of such a block begins.
+const BREAK: &[u8] = br#"{"note":"break""#;
+
 /// Places in the page that are filled in.
 const HOLES: [&str; 3] = ["/*style*/", "/*script*/", "<!--film-->"];
 
@@ -40,25 +45,27 @@ pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
     let at = FilmError::at(page);
     let (unfinished, file) = Unfinished::beside(page).map_err(&at)?;
     let mut out = BufWriter::new(file);
-    let [before, after] = halves();
+    let before = &halves(false)[0];
     out.write_all(before.as_bytes()).map_err(&at)?;
     out.write_all(b"<script type=\"application/octet-stream;base64\" id=\"film\">").map_err(&at)?;
     let mut text = EncoderWriter::new(&mut out, &STANDARD);
     text.write_all(&MAGIC).map_err(&at)?;
+    let mut breaks = false;
     while let Some(chunk) = chunks.next().map_err(no_film)? {
+        breaks |= chunk.kind == Kind::Note && chunk.body().map_err(no_film)?.starts_with(BREAK);
         text.write_all(&chunk.bytes).map_err(&at)?;
     }
     text.finish().map_err(&at)?;
     drop(text);
     out.write_all(b"</script>").map_err(&at)?;
-    out.write_all(after.as_bytes()).map_err(&at)?;
+    out.write_all(halves(breaks)[1].as_bytes()).map_err(&at)?;
     out.into_inner().map_err(|error| at(error.into_error()))?;
     unfinished.finish().map_err(&at)
 }
 
 /// The page without a film, which requests one from its server.
 pub fn live_page() -> String {
-    halves().concat()
+    halves(true).concat()
 }
 
 /// The page of `enmm edit`, which shows the pages of models as they are built.
@@ -66,10 +73,12 @@ pub fn edit_page() -> &'static str {
     EDITOR
 }
 
-/// The page before and behind the film.
-fn halves() -> [String; 2] {
+/// The page before and behind the film, for films that tell of breaks or others.
+fn halves(breaks: bool) -> [String; 2] {
     let [style, script, film] = HOLES;
-    let page = PAGE.replace(style, STYLE).replace(script, &SCRIPTS.concat());
+    let of_breaks = if breaks { BREAKS } else { "" };
+    let scripts = SCRIPTS.concat() + of_breaks;
+    let page = PAGE.replace(style, STYLE).replace(script, &scripts);
     let (before, after) = page.split_once(film).unwrap_or((&page, ""));
     [before.to_owned(), after.to_owned()]
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::support::{BOLT, Chunk, MONITOR, Moment, Reader, SURFACE, Slope, chunks, head};
-use enmm_report::{EdgeState, FilmError, FilmWriter, Note, QUANTUM, write_page};
+use enmm_report::{Break, EdgeState, FilmError, FilmWriter, Note, QUANTUM, write_page};
 use tempfile::tempdir;
 
 /// Single precision and five digits (the last byte is left out).
@@ -170,6 +170,91 @@ fn rows_and_notes_stand_where_they_were_put() {
     assert_eq!(rows.planes(2, 4), [0.5, -1.5]);
     let note: serde_json::Value = serde_json::from_slice(&chunks[3].2).unwrap();
     assert_eq!(note, serde_json::json!({ "note": "warning", "text": "loose" }));
+}
+
+/// Outlines of a film and the moment of each frame behind them, read back.
+fn read_back(path: &Path, slopes: &[(&Slope, &[f64])]) {
+    let chunks = chunks(&std::fs::read(path).unwrap());
+    let kinds: String = chunks.iter().filter(|(kind, ..)| kind != "NOTE").map(|(kind, ..)| &kind[..1]).collect();
+    let wanted: String = slopes.iter().map(|(_, times)| "O".to_owned() + &"F".repeat(times.len())).collect();
+    assert_eq!(kinds, "H".to_owned() + &wanted);
+    let mut chunks = chunks.into_iter().filter(|(kind, ..)| ["OUTL", "FRAM"].contains(&kind.as_str()));
+    for (slope, times) in slopes {
+        let (_, _, outlines) = chunks.next().unwrap();
+        let arms = arms(&outlines);
+        assert_eq!(arms.len(), slope.corners());
+        let mut head = Reader(&outlines[8..]);
+        let origin = [head.f64(), head.f64()];
+        assert!(head.f64() > 0.0, "its size");
+        assert_eq!(head.u32(), slope.outlines[0].id);
+        for &time in *times {
+            let (_, at, body) = chunks.next().unwrap();
+            assert_eq!(at, time);
+            let (found, moment) = (decoded(&body, &arms, slope.outlines.len()), slope.at(time));
+            compare(&found, &moment);
+            compare_structures(&found.structures, &moment, origin);
+        }
+    }
+}
+
+#[test]
+fn frames_after_a_break_have_the_blocks_of_their_own_outlines() {
+    let (folder, whole) = (tempdir().unwrap(), Slope::new(3, 2));
+    let path = folder.path().join("film.bin");
+    let (once, twice) = (whole.broken(2), whole.broken(2).broken(6));
+    assert_eq!([&whole, &once, &twice].map(|slope| slope.outlines.len()), [6, 7, 8]);
+    let mut film = FilmWriter::create(&path, &head(), &whole.outlines).unwrap();
+    let frame = |film: &mut FilmWriter, slope: &Slope, time| film.frame(&slope.at(time).frame());
+    [0.0, 0.1].into_iter().for_each(|time| frame(&mut film, &whole, time).unwrap());
+    film.outlines(0.2, &once.outlines).unwrap();
+    let refused = frame(&mut film, &whole, 0.2).unwrap_err().to_string();
+    assert_eq!(refused, "6 blocks of a frame were given, the film has 7");
+    [0.2, 0.3].into_iter().for_each(|time| frame(&mut film, &once, time).unwrap());
+    film.outlines(0.4, &twice.outlines).unwrap();
+    frame(&mut film, &twice, 0.4).unwrap();
+    read_back(&path, &[(&whole, &[0.0, 0.1]), (&once, &[0.2, 0.3]), (&twice, &[0.4])]);
+    // A run that goes on from before the second break, and breaks later now.
+    let mut film = FilmWriter::resume(&path, &head(), &once.outlines, 0.35).unwrap();
+    frame(&mut film, &once, 0.4).unwrap();
+    film.outlines(0.5, &twice.outlines).unwrap();
+    frame(&mut film, &twice, 0.5).unwrap();
+    read_back(&path, &[(&whole, &[0.0, 0.1]), (&once, &[0.2, 0.3, 0.4]), (&twice, &[0.5])]);
+    // From before the first one: the outlines of the start stay.
+    drop(FilmWriter::resume(&path, &head(), &whole.outlines, 0.15).unwrap());
+    read_back(&path, &[(&whole, &[0.0, 0.1])]);
+}
+
+/// The script of breaks comes with films that tell of one, and no other page grows by it.
+#[test]
+fn a_page_lists_breaks_where_its_film_tells_of_some() {
+    let (folder, slope) = (tempdir().unwrap(), Slope::new(2, 2));
+    let [film, page] = ["film.bin", "report.html"].map(|name| folder.path().join(name));
+    let mut writer = FilmWriter::create(&film, &head(), &slope.outlines).unwrap();
+    writer.note(0.0, &Note::Warning { text: "{\"note\":\"break\"".to_owned() }).unwrap();
+    let text = || {
+        write_page(&film, &page).unwrap();
+        std::fs::read_to_string(&page).unwrap()
+    };
+    assert!(!text().contains("function breaksSection"));
+    let broken = Break {
+        at: 0.25,
+        block: 3,
+        part: 4,
+        failure: "by bending".to_owned(),
+        ends: [[0.0, 1.0], [2.0, 1.0]],
+        share: 1.0625,
+        normal: -5e3,
+        shear: 2e4,
+        moment: 1e5,
+    };
+    writer.note(0.3, &Note::Break(broken)).unwrap();
+    assert!(text().contains("function breaksSection") && enmm_report::live_page().contains("function breaksSection"));
+    let note = chunks(&std::fs::read(&film).unwrap()).pop().unwrap();
+    let shown = serde_json::json!({
+        "note": "break", "at": 0.25, "block": 3, "part": 4, "failure": "by bending",
+        "ends": [[0.0, 1.0], [2.0, 1.0]], "share": 1.0625, "normal": -5e3, "shear": 2e4, "moment": 1e5,
+    });
+    assert_eq!(serde_json::from_slice::<serde_json::Value>(&note.2).unwrap(), shown);
 }
 
 /// Size of a page with so many blocks and frames (bytes).

@@ -89,6 +89,54 @@ fn every_number_of_the_tables_is_one_of_the_record() {
     assert!(!html.contains("0.00042"));
 }
 
+/// A run in which a block broke, and another one is near to it.
+#[test]
+fn breaks_of_blocks_are_listed_with_what_their_sections_carried() {
+    let section = json!({
+        "block": 3, "ends": [[13.0, 10.0], [13.0, 14.0]], "length": 4.0, "share": 1.0132, "failure": "bends",
+        "normal": 218_600.0, "shear": -774_912.0, "moment": -2.1503e6
+    });
+    let mut broken = section.clone();
+    broken["time"] = json!(0.07582);
+    broken["stage"] = json!(1);
+    broken["part"] = json!(12);
+    let mut near = section;
+    near["failure"] = json!("splits");
+    near["share"] = json!(0.5627);
+    near["block"] = json!(41);
+    let mut run = fos();
+    run["status"] = json!("finished");
+    run["breaks"] = json!([broken]);
+    run["worst_sections"] = json!([near]);
+    let folder = folder_with(&[("summary.json", &run)]);
+    let shown = html(folder.path());
+    let part =
+        |title: &str| shown.split(&format!("<h3>{title}</h3>")).nth(1).and_then(|rest| rest.split("<h3>").next());
+    let breaks = part("Blocks that broke").expect("a part");
+    for number in [
+        "0.07582\">0.0758",
+        "3\">3",
+        "12\">12",
+        "13\">13.0",
+        "14\">14.0",
+        "1.0132\">1.01",
+        "218600\">219",
+        "-774912\">−775",
+        "-2150300\">−2.15",
+    ] {
+        assert!(breaks.contains(&format!("<data value=\"{number}</data>")), "{number} in {breaks}");
+    }
+    assert!(breaks.contains("bending"), "{breaks}");
+    let nearest = part("Blocks nearest to breaking at the end of the run").expect("a part");
+    assert!(
+        nearest.contains("its core") && nearest.contains("0.5627\">0.563") && nearest.contains(">41<"),
+        "{nearest}"
+    );
+    run["breaks"] = Value::Null;
+    let folder = folder_with(&[("summary.json", &run)]);
+    assert!(!html(folder.path()).contains("Blocks that broke"));
+}
+
 fn number(text: &str) -> f64 {
     text.split('"').next().expect("a value").parse().expect("a number")
 }

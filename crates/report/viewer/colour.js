@@ -125,13 +125,15 @@ function coloursOf(film) {
 }
 
 // A number of blocks as a colour.
-function colourOf({ name, meaning, unit }) {
-  return { key: name, name: meaning, ramp: "viridis", unit, logarithmic: false, value: (frame, k) => frame[name][k] };
+function colourOf({ name, meaning, unit, range }) {
+  const value = (frame, k) => frame[name][k];
+  return { key: name, name: meaning, ramp: "viridis", unit, range, logarithmic: false, value };
 }
 
 // Smallest to largest value of a quantity over frames; one block in two hundred at either end does not count when
 // there are many, so that a single chip does not take all colours.
 function rangeOf(film, colour, frames, base) {
+  if (colour.range) return colour.range;
   const values = [];
   for (const frame of frames) {
     const from = film.under(base, frame.shape);

@@ -330,7 +330,7 @@ class Film {
   of(kind) {
     const found = this.notes.filter((note) => note.note === kind);
     // A resumed run warns again of what was known before.
-    const key = { stage: "number", warning: "text", changes: "title" }[kind];
+    const key = { stage: "number", warning: "text", changes: "title", break: "part" }[kind];
     return key ? [...new Map(found.map((note) => [note[key], note])).values()] : found;
   }
 

@@ -12,22 +12,11 @@ function element(name, attributes = {}, ...children) {
 }
 
 function table(rows) {
-  return element(
-    "table",
-    {},
-    element(
-      "tbody",
-      {},
-      ...rows.map(([name, value, exact]) =>
-        element(
-          "tr",
-          {},
-          element("th", { scope: "row" }, name),
-          element("td", exact === undefined ? {} : { title: exact }, value),
-        ),
-      ),
-    ),
-  );
+  const row = ([name, value, exact]) => {
+    const shown = element("td", exact === undefined ? {} : { title: exact }, value);
+    return element("tr", {}, element("th", { scope: "row" }, name), shown);
+  };
+  return element("table", {}, element("tbody", {}, ...rows.map(row)));
 }
 
 // A row of a table: the value with a unit for reading, and in the unit of the film under the pointer.
@@ -159,6 +148,12 @@ const KEYS = [
 // Marks beside the colour: a reader who sees no colour sees the mark.
 const VERDICTS = { stable: "● stable", unstable: "✕ unstable", caught: "▲ caught" };
 
+// A table with a head; so many columns are text.
+function headed(id, texts, head, rows) {
+  const cells = head.map((name, k) => element("th", k < texts ? { class: "text" } : {}, name));
+  return element("table", { id }, element("thead", {}, element("tr", {}, ...cells)), element("tbody", {}, ...rows));
+}
+
 function trialsSection({ result, trials }) {
   const head = ["F", "Verdict", "Moved", "Failing"];
   const rows = trials.map((trial) =>
@@ -173,20 +168,7 @@ function trialsSection({ result, trials }) {
       element("td", {}, trial.failing ? `${digits(trial.area)} m²` : "–"),
     ),
   );
-  return section(
-    "Factor of safety",
-    element("p", {}, result),
-    element(
-      "table",
-      { id: "trials" },
-      element(
-        "thead",
-        {},
-        element("tr", {}, ...head.map((name, k) => element("th", k < 2 ? { class: "text" } : {}, name))),
-      ),
-      element("tbody", {}, ...rows),
-    ),
-  );
+  return section("Factor of safety", element("p", {}, result), headed("trials", 2, head, rows));
 }
 
 function stagesSection(stages, end) {
@@ -201,19 +183,7 @@ function stagesSection(stages, end) {
       element("td", {}, stage.outcome || "…"),
     ),
   );
-  return section(
-    "Stages",
-    element(
-      "table",
-      { id: "stages" },
-      element(
-        "thead",
-        {},
-        element("tr", {}, ...head.map((name, k) => element("th", k < 1 ? { class: "text" } : {}, name))),
-      ),
-      element("tbody", {}, ...rows),
-    ),
-  );
+  return section("Stages", headed("stages", 1, head, rows));
 }
 
 // What a run says of its slope, before all else.
@@ -261,6 +231,8 @@ function panelSections(film, shown, toggle) {
   film
     .of("facts")
     .forEach((note) => made.push(section(note.title, table(note.rows.map((row) => [row.name, row.value])))));
+  const breaks = film.of("break");
+  if (breaks.length) made.push(breaksSection(breaks));
   const warnings = film.of("warning"),
     stages = film.of("stage");
   if (warnings.length) made.push(warningsSection(warnings));

@@ -246,7 +246,7 @@ class Viewer {
       const note =
         colour.key === "stress" ? ", tension positive" : this.ranged !== null ? ", since the start of the stage" : "";
       legend.replaceChildren(
-        `${colour.name} (${shown.name})${note}${logarithmic ? ", logarithmic" : ""}`,
+        `${colour.name}${shown.name && ` (${shown.name})`}${note}${logarithmic ? ", logarithmic" : ""}`,
         bar,
         element(
           "div",

@@ -27,8 +27,13 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
     let simulation = &main.simulation;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening =
-        Opening { command: "fos", film: unfinished.path().to_owned(), axis, numbers: numbers(), columns: &[] };
+    let opening = Opening {
+        command: "fos",
+        film: unfinished.path().to_owned(),
+        axis,
+        numbers: numbers(simulation),
+        columns: &[],
+    };
     let mut film = Film::open(directory, loaded, simulation, opening, None)?;
     film.rigid_frame(simulation, 0.0, |_| (Vector::zeros(), 0.0))?;
     film.frame_at(simulation, 1.0)?;

@@ -2,7 +2,7 @@
 
 use enmm_observe::{
     BLOCK_QUANTITIES, BOLT_QUANTITIES, ENERGIES, JOINT_QUANTITIES, MONITOR_QUANTITIES, PORT_QUANTITIES, Quantity,
-    REPORT_QUANTITIES, STRESS_QUANTITIES, TOTALS,
+    REPORT_QUANTITIES, STRENGTH_QUANTITIES, STRESS_QUANTITIES, TOTALS,
 };
 
 /// Path of the page in the repository.
@@ -26,6 +26,14 @@ pub fn page() -> String {
          a run. C and Python also know `contacts` as `contact_count` and `penetration_max` as `largest_penetration`.",
         "array of FMI 3",
         &BLOCK_QUANTITIES,
+    );
+    page += &part(
+        "Blocks of rock that can break",
+        "Further columns of `blocks.csv`, arrays of the frames for ParaView and numbers of the page of a run, where a \
+         rock has a `fracture`; files of other cases do not have them. A block whose sections all have less than 0.3 \
+         has an upper bound, and rock that does not break has 0.",
+        "",
+        &STRENGTH_QUANTITIES,
     );
     page += &part(
         "Energies and works",

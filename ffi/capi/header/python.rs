@@ -24,7 +24,7 @@ const TUPLES: [&str; 7] = [
 ];
 
 /// Enumerations: name in C, class in Python, prefix of the members in C, documentation.
-const ENUMERATIONS: [[&str; 4]; 7] = [
+const ENUMERATIONS: [[&str; 4]; 8] = [
     ["enmm_contact_state", "ContactState", "ENMM_CONTACT_", "`state` of a contact."],
     [
         "enmm_event_kind",
@@ -32,6 +32,7 @@ const ENUMERATIONS: [[&str; 4]; 7] = [
         "ENMM_EVENT_",
         "Kind of an event. Each happens once to a block or joint, and only in dynamic stages.",
     ],
+    ["enmm_section_failure", "SectionFailure", "ENMM_SECTION_", "How a section of rock broke."],
     ["enmm_port_type", "PortKind", "ENMM_PORT_", "Kind of a port."],
     ["enmm_input", "Input", "ENMM_INPUT_", "An input."],
     ["enmm_interpolation", "Interpolation", "ENMM_INTERPOLATION_", "How inputs go through a communication step."],

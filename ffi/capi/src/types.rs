@@ -160,6 +160,20 @@ pub enum enmm_event_kind {
     ENMM_EVENT_CUT = 5,
 }
 
+/// How a section of rock broke.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum enmm_section_failure {
+    /// Its outermost fibre had the tensile strength, by tension more than by bending.
+    ENMM_SECTION_OPENED = 0,
+    /// It had its strength in shear.
+    ENMM_SECTION_SLID = 1,
+    /// Its outermost fibre had the tensile strength, by bending more than by tension.
+    ENMM_SECTION_BENT = 2,
+    /// A core of its block had the tensile strength.
+    ENMM_SECTION_SPLIT = 3,
+}
+
 /// Weight of a message.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -302,6 +316,40 @@ pub struct enmm_event {
     pub depth: f64,
 }
 
+/// A section of rock that has broken and is a joint since then.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_cut {
+    /// Size of this structure (bytes), set by the caller; in an array that of the first is also the stride.
+    pub struct_size: usize,
+    /// Block that broke; its part with the point of a port, or else with its reference point, keeps the id.
+    pub block: u32,
+    /// Id of the part that is new.
+    pub part: u32,
+    /// How it broke.
+    pub failure: enmm_section_failure,
+    /// 0.
+    pub reserved: u32,
+    /// End of the internal step in which it broke (s), as enmm_get_time counts.
+    pub time: f64,
+    /// First end in the reference configuration, x (m).
+    pub first_x: f64,
+    /// First end, y up (m).
+    pub first_y: f64,
+    /// Second end, x (m).
+    pub second_x: f64,
+    /// Second end, y up (m).
+    pub second_y: f64,
+    /// Share of its strength that it carried, 1 or a little more.
+    pub share: f64,
+    /// Normal force that it carried (N/m, tension positive).
+    pub normal_force: f64,
+    /// Shear force that it carried (N/m).
+    pub shear_force: f64,
+    /// Bending moment about its middle that it carried (N*m/m).
+    pub moment: f64,
+}
+
 /// Samples of enmm_rollout.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -347,6 +395,10 @@ sized! {
     enmm_contact 80 {
         struct_size state law node_block edge_block position_x position_y normal_x normal_y length normal_stress
         shear_stress
+    }
+    enmm_cut 96 {
+        struct_size block part failure reserved time first_x first_y second_x second_y share normal_force shear_force
+        moment
     }
     enmm_rollout_plan 104 {
         struct_size samples states state_count parameters parameter_count values step steps ports quantities

@@ -101,6 +101,11 @@ fn no_call_that_fails_changes_a_byte_of_the_state() {
 }
 
 #[test]
+fn rock_that_breaks_has_parts_and_gives_the_same_bits_again() {
+    say(&succeed(Command::new(host("ffi/capi/tests/c/breaks.c")).arg("ffi/capi/tests/cases/breaking.toml")));
+}
+
+#[test]
 fn bridges_that_break_are_events_and_give_the_same_bits_again() {
     say(&succeed(Command::new(host("ffi/capi/tests/c/bridges.c")).arg("ffi/capi/tests/cases/bridges.toml")));
 }

@@ -36,8 +36,10 @@ pub struct Facts {
     pub communication_step: f64,
     /// Internal step (s).
     pub internal_step: f64,
-    /// Number of blocks.
+    /// Number of blocks at the start.
     pub blocks: usize,
+    /// The most that there can be.
+    pub blocks_max: usize,
 }
 
 /// Details that each version of the standard writes in its own way.
@@ -119,6 +121,7 @@ impl Facts {
                 said(&notes.license, "as its author says")
             ),
             blocks,
+            blocks_max: model.blocks_max(),
         }
     }
 }

@@ -177,7 +177,7 @@ mod tests {
         std::fs::write(folder.join(crate::resource::FILE), crate::resource::encode(&loaded, "incline").unwrap())
             .unwrap();
         let model = loaded.cosimulation().unwrap();
-        let token = table::Table::new(&loaded.case, model.block_states().len(), &loaded.hash, Version::Three).token;
+        let token = table::Table::new(&loaded.case, model.blocks_max(), &loaded.hash, Version::Three).token;
         let plan = Plan {
             version: Version::Three,
             name: "a",

@@ -53,8 +53,8 @@ pub fn pack(loaded: &LoadedCase, name: &str, version: Version, libraries: &[Libr
     let libraries = in_order(libraries)?;
     let model = loaded.cosimulation()?;
     let facts = Facts::of(&model, &identifier(name));
-    check_blocks(model.case(), facts.blocks).map_err(PackError::Block)?;
-    let table = Table::new(model.case(), facts.blocks, &loaded.hash, version);
+    check_blocks(model.case(), facts.blocks_max).map_err(PackError::Block)?;
+    let table = Table::new(model.case(), facts.blocks_max, &loaded.hash, version);
     let files = files(loaded, name, &model, &facts, &table, &libraries)?;
     let bytes = archive(&files).map_err(|error| PackError::Part("the archive", error.to_string()))?;
     let warnings = loaded.warnings.iter().chain(model.warnings()).cloned().collect();

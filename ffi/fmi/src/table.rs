@@ -64,11 +64,18 @@ pub enum Total {
     Extreme(usize),
     /// Internal step (s).
     InternalDt,
+    /// Blocks, those included that have come from others by cuts.
+    PartCount,
+    /// Sections of rock that have broken.
+    CutCount,
+    /// Their length (m).
+    CutLength,
     /// Events so far.
     EventCount,
     /// Time of the last event (s); 0 when there was none.
     LastEventTime,
-    /// Last event: 0 none, 1 block detached, 2 joint slipped, 3 block failed, 4 two blocks overlap.
+    /// Last event: 0 none, 1 block detached, 2 joint slipped, 3 block failed, 4 two blocks overlap, 5 bond broken,
+    /// 6 block cut.
     LastEventKind,
     /// Block or joint of the last event; −1 when there was none, or for a contact away from joints.
     LastEventSubject,
@@ -214,7 +221,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// The variables of a case with so many blocks; `hash` is the fingerprint of the case.
+    /// The variables of a case with so many blocks at most; `hash` is the fingerprint of the case.
     pub fn new(case: &Case, blocks: usize, hash: &str, version: Version) -> Self {
         let parameters = parameters(case);
         let mut rows = Rows { variables: Vec::new(), blocks };
@@ -226,6 +233,9 @@ impl Table {
         rows.outputs(case, version);
         case.fmu.iter().flat_map(|notes| &notes.blocks).for_each(|&block| rows.block(block as usize));
         rows.results_folder();
+        if case.has_cuts() {
+            BREAKING_TOTALS.into_iter().for_each(|total| rows.total(total));
+        }
         set_nominals(&mut rows.variables, case);
         let token = token(&rows.variables, hash, version);
         Self { version, variables: rows.variables, parameters, token }
@@ -443,7 +453,7 @@ impl Rows {
             let what = "Height y of the free water surface";
             self.input("water_level", what, "m", water.start_level(), Quantity::WaterLevel);
         }
-        let what = "Factor on cohesion, tan(friction angle) and tensile strength of all joints";
+        let what = "Factor on cohesion, tan(friction angle) and tensile strength of joints and rock";
         self.input("strength_factor", what, "", 1.0, Quantity::StrengthFactor);
         for (k, port) in case.ports.iter().enumerate() {
             self.port_inputs(k, port);
@@ -546,7 +556,7 @@ impl Rows {
         }
     }
 
-    /// Stands last, so that it moves no value reference.
+    /// Stands behind all that were there before it, so that it moves no value reference.
     fn results_folder(&mut self) {
         let what = "Folder to record the results of the run into, with pictures and summary; empty for none";
         self.parameter("results_folder", what, "", Type::String, Quantity::ResultsFolder);
@@ -635,7 +645,14 @@ const FIRST_BLOCK_OUTPUTS: [&str; 13] = [
 type TotalRow = (Total, &'static str, &'static str, &'static str, Type);
 
 /// What the numbers of the last event's kind mean.
-const KINDS: &str = "Last event: 0 none, 1 detached, 2 slipped, 3 failed, 4 overlapped, 5 bond broken";
+const KINDS: &str = "Last event: 0 none, 1 detached, 2 slipped, 3 failed, 4 overlapped, 5 bond broken, 6 block cut";
+
+/// Outputs of a model whose blocks can be cut.
+const BREAKING_TOTALS: [TotalRow; 3] = [
+    (Total::PartCount, "part_count", "Blocks now; arrays have 0 behind them", "", Type::Integer),
+    (Total::CutCount, "cut_count", "Sections of rock that have broken", "", Type::Integer),
+    (Total::CutLength, "cut_length", "Length of the sections of rock that have broken", "m", Type::Real),
+];
 
 /// Outputs of the whole model that no other interface has under these names.
 const OWN_TOTALS: [TotalRow; 5] = [

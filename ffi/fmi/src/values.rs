@@ -2,6 +2,7 @@
 
 use enmm::cosimulation::{Cosimulation, CosimulationError, Input, PortKind};
 use enmm::geometry::Vector;
+use enmm::model::case::keys::Plain;
 
 use crate::table::{Axis, Causality, Quantity, Table, Type, Variable};
 
@@ -156,9 +157,13 @@ impl Values {
     fn push_blocks(&self, table: &Table, model: &mut Cosimulation) -> Result<(), CosimulationError> {
         let blocks = model.inputs().block_force.len();
         let (mut force, mut moment) = (vec![Vector::zeros(); blocks], vec![0.0; blocks]);
-        let of_port = |k: usize| model.ports().get(k).filter(|p| p.kind == PortKind::Block).map(|p| p.block.index());
+        let is_block = |k: usize| model.ports().get(k).is_some_and(|port| port.kind == PortKind::Block);
+        let of_port = |k: usize| model.port_block(k).ok().filter(|_| is_block(k)).map(|block| block as usize);
         for v in &table.variables {
             let values = self.get(v.reference);
+            if matches!(v.quantity, Quantity::BlockForce(_) | Quantity::BlockMoment) {
+                check_parts(v, values, blocks)?;
+            }
             match v.quantity {
                 Quantity::BlockForce(axis) => {
                     force.iter_mut().zip(values).for_each(|(sum, value)| *component(sum, axis) += value);
@@ -174,6 +179,19 @@ impl Values {
         let sums = force.into_iter().zip(moment).enumerate();
         model.set_block_forces(sums.map(|(block, (force, moment))| (block as u32, force, moment)))
     }
+}
+
+/// Refuses a load on a block into which rock has not broken yet.
+fn check_parts(variable: &Variable, values: &[f64], blocks: usize) -> Result<(), CosimulationError> {
+    let early = values.iter().enumerate().skip(blocks).find(|(_, value)| **value != 0.0);
+    early.map_or(Ok(()), |(k, value)| {
+        Err(CosimulationError::Value {
+            name: format!("{}[{k}]", variable.name),
+            value: Plain(*value).to_string(),
+            limit: format!("0, since there are {blocks} blocks now"),
+            remedy: "look at part_count before",
+        })
+    })
 }
 
 /// Whether a variable has numbers that can be set.

@@ -28,7 +28,7 @@ fn instance(version: Version, folder: &Path) -> Instance {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let loaded = load_case(&root.join("examples/cases/block_on_incline.toml")).unwrap();
     std::fs::write(folder.join(resource::FILE), resource::encode(&loaded, "incline").unwrap()).unwrap();
-    let blocks = loaded.cosimulation().unwrap().block_states().len();
+    let blocks = loaded.cosimulation().unwrap().blocks_max();
     let token = Table::new(&loaded.case, blocks, &loaded.hash, version).token;
     let plan = Plan {
         version,

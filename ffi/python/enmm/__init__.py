@@ -36,6 +36,7 @@ from ._abi import (
     LogLevel,
     NameKind,
     PortKind,
+    SectionFailure,
 )
 from ._batch import Rollout, batch_step, rollout
 from ._case import Case
@@ -72,7 +73,7 @@ from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, Me
 from ._results import Fos, Result, RunError
 from ._table import Table
 from ._tasks import bound, check, fos, run
-from ._types import Event, Inputs, PortInputs
+from ._types import Cut, Event, Inputs, PortInputs
 from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
 
 __version__ = "0.1.0"
@@ -102,6 +103,7 @@ __all__ = [
     "Check",
     "Collapse",
     "ContactState",
+    "Cut",
     "DeadHandleError",
     "Energies",
     "EnmmError",
@@ -142,6 +144,7 @@ __all__ = [
     "Rollout",
     "RunError",
     "Samples",
+    "SectionFailure",
     "StartInfo",
     "State",
     "StateError",

@@ -55,6 +55,19 @@ class EventKind(IntEnum):
     """A block broke in two: `subject` goes on, `other` is the number of the new part."""
 
 
+class SectionFailure(IntEnum):
+    """How a section of rock broke."""
+
+    OPENED = 0
+    """Its outermost fibre had the tensile strength, by tension more than by bending."""
+    SLID = 1
+    """It had its strength in shear."""
+    BENT = 2
+    """Its outermost fibre had the tensile strength, by bending more than by tension."""
+    SPLIT = 3
+    """A core of its block had the tensile strength."""
+
+
 class PortKind(IntEnum):
     """Kind of a port."""
 
@@ -295,6 +308,27 @@ class Event(ctypes.Structure):
     ]
 
 
+class Cut(ctypes.Structure):
+    """`enmm_cut`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("block", c_uint32),
+        ("part", c_uint32),
+        ("failure", c_int32),
+        ("reserved", c_uint32),
+        ("time", c_double),
+        ("first_x", c_double),
+        ("first_y", c_double),
+        ("second_x", c_double),
+        ("second_y", c_double),
+        ("share", c_double),
+        ("normal_force", c_double),
+        ("shear_force", c_double),
+        ("moment", c_double),
+    ]
+
+
 class PortState(ctypes.Structure):
     """`enmm_port_state`."""
 
@@ -351,6 +385,7 @@ STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_totals": Totals,
     "enmm_contact": Contact,
     "enmm_event": Event,
+    "enmm_cut": Cut,
     "enmm_port_state": PortState,
     "enmm_rollout_plan": RolloutPlan,
 }
@@ -430,6 +465,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_get_totals": (c_int32, [c_void_p, POINTER(Totals)]),
     "enmm_get_contacts": (c_int32, [c_void_p, POINTER(Contact), c_size_t, POINTER(c_size_t)]),
     "enmm_get_events": (c_int32, [c_void_p, c_size_t, POINTER(Event), c_size_t, POINTER(c_size_t)]),
+    "enmm_blocks_max": (c_int32, [c_void_p, POINTER(c_size_t)]),
+    "enmm_get_cuts": (c_int32, [c_void_p, POINTER(Cut), c_size_t, POINTER(c_size_t)]),
     "enmm_get_block_polygon": (c_int32, [c_void_p, c_uint32, POINTER(c_double), c_size_t, POINTER(c_size_t)]),
     "enmm_block_hole_count": (c_int32, [c_void_p, c_uint32, POINTER(c_size_t)]),
     "enmm_get_block_hole": (c_int32, [c_void_p, c_uint32, c_uint32, POINTER(c_double), c_size_t, POINTER(c_size_t)]),

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi, _html, _plots
-from ._abi import EventKind, Input, Interpolation, LogLevel, NameKind
+from ._abi import EventKind, Input, Interpolation, LogLevel, NameKind, SectionFailure
 from ._case import checked_text
 from ._closing import Closing
 from ._core import Core, LogFunction, ProgressFunction, Rows, dtype_of, ids_of, index, pointer, text
@@ -24,7 +24,7 @@ from ._mapping import number_of
 from ._options import number, numbers, path
 from ._parameters import Parameters
 from ._ports import Port, Ports
-from ._types import Event, Inputs, PortInputs
+from ._types import CUT_FIELDS, Cut, Event, Inputs, PortInputs
 from ._values import Energies, MonitorState, StartInfo, StepInfo, Totals
 
 if TYPE_CHECKING:
@@ -149,6 +149,7 @@ class Model(Closing):
         "_case",
         "_contacts",
         "_core",
+        "_cuts",
         "_events",
         "_is_started",
         "_names",
@@ -163,6 +164,7 @@ class Model(Closing):
             raise TypeError("a Model is made by `Model.from_file(path)`, `Model.from_string(toml)` or `case.model()`")
         self._core, self._case = core, source
         self._blocks, self._contacts, self._events = Rows(_abi.BlockState), Rows(_abi.Contact), Rows(_abi.Event)
+        self._cuts = Rows(_abi.Cut)
         self._threads = 1
         self._ports = Ports(core)
         self._parameters = Parameters(core)
@@ -477,9 +479,9 @@ class Model(Closing):
         return PortInputs(tuple(traction), pressure.value, tuple(velocity))
 
     def set_strength_factor(self, f: float) -> None:
-        """Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied.
+        """Sets the factor by which cohesion, tan(friction angle) and tensile strength are multiplied.
 
-        1 is the strength of the case.
+        It acts on all joints, and on rock that yields or breaks; 1 is the strength of the case.
         """
         self._core.call("enmm_set_strength_factor", number("f", f))
 
@@ -497,7 +499,10 @@ class Model(Closing):
 
     @property
     def block_count(self) -> int:
-        """Number of blocks, excavated ones included. It never changes."""
+        """Number of blocks, excavated ones included.
+
+        It grows when rock breaks and when a stage parts blocks; blocks that are there keep their ids.
+        """
         return int(self._core.get("enmm_block_count", c_size_t))
 
     def blocks(self, *, copy: bool = False) -> npt.NDArray[np.void]:
@@ -535,15 +540,34 @@ class Model(Closing):
             for kind, of, time, other, depth in zip(*columns, strict=True)
         ]
 
+    @property
+    def cuts(self) -> list[Cut]:
+        """Sections of rock that have broken so far, in order. Going back to a saved state goes back to its own."""
+        rows = self._rows(self._cuts, "enmm_get_cuts", False)
+        fields = [rows[name].tolist() for name in CUT_FIELDS]
+        return [
+            Cut(block, part, SectionFailure(failure), time, (a, b), (c, d), *others)
+            for block, part, failure, time, a, b, c, d, *others in zip(*fields, strict=True)
+        ]
+
+    @property
+    def blocks_max(self) -> int:
+        """Most blocks that the model can have: those of its last stage, and `fracture.parts_max` more.
+
+        The latter only where rock can break.
+        """
+        return int(self._core.get("enmm_blocks_max", c_size_t))
+
     def _name_of(self, kind: int, subject: int) -> str | None:
         """Name of the subject of an event."""
         if subject == _abi.NO_JOINT:
             return None
-        of_joints = kind in (EventKind.SLIPPED, EventKind.BROKEN)
-        return self.names(NameKind.JOINT if of_joints else NameKind.BLOCK)[subject]
+        if kind in (EventKind.SLIPPED, EventKind.BROKEN):
+            return self.names(NameKind.JOINT)[subject]
+        return self._core.text("enmm_name", NameKind.BLOCK, subject)
 
     def names(self, kind: NameKind) -> tuple[str, ...]:
-        """Names of all things of a kind, by their numbers. They never change.
+        """Names of all things of a kind, by their numbers. They never change, but parts of blocks come behind.
 
         What the case does not name has a stand-in: "joint[2]" is a joint of the case by its place there,
         "bedding trace 4" (or "joint_set[1] trace 4") a trace of a joint set, "rock bridge 7" a rock bridge, "trace 9"
@@ -551,7 +575,7 @@ class Model(Closing):
         block.
         """
         kind = NameKind(kind)
-        if kind not in self._names:
+        if kind is NameKind.BLOCK or kind not in self._names:
             count = self._core.get("enmm_name_count", c_size_t, kind)
             self._names[kind] = tuple(self._core.text("enmm_name", kind, k) for k in range(count))
         return self._names[kind]

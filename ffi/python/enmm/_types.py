@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ._abi import EventKind
+from ._abi import EventKind, SectionFailure
 
 
 class Event(NamedTuple):
@@ -23,6 +23,38 @@ class Event(NamedTuple):
     """Depth of an overlap when it was found (m); 0 for events of other kinds."""
     name: str | None = None
     """Name of the joint or block, as `Model.names` gives it; None for a contact that lies on no joint."""
+
+
+class Cut(NamedTuple):
+    """A section of rock that has broken and is a joint since then."""
+
+    block: int
+    """Block that broke; its part with its reference point keeps the id."""
+    part: int
+    """Id of the part that is new."""
+    failure: SectionFailure
+    """How it broke."""
+    time: float
+    """End of the internal step in which it broke (s), as `Model.time` counts."""
+    first: tuple[float, float]
+    """First end in the reference configuration (m)."""
+    second: tuple[float, float]
+    """Second end (m)."""
+    share: float
+    """Share of its strength that it carried, 1 or a little more."""
+    normal_force: float
+    """Normal force that it carried (N/m, tension positive)."""
+    shear_force: float
+    """Shear force that it carried (N/m)."""
+    moment: float
+    """Bending moment about its middle that it carried (N*m/m)."""
+
+
+CUT_FIELDS = (
+    "block", "part", "failure", "time", "first_x", "first_y", "second_x", "second_y", "share", "normal_force",
+    "shear_force", "moment",
+)  # fmt: skip
+"""Fields of `enmm_cut` in the order of `Cut`."""
 
 
 class Inputs(NamedTuple):

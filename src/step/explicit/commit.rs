@@ -23,11 +23,12 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     let Workspace { outcomes, supports, sweep, sections, .. } = workspace;
     let totals = finish(model, state, step, mass_matrix, motion, sweep, sums);
     let setting = model.contact_setting(&state.laws, frames, selection);
+    let has_bonds = has_bonds(model, state);
     let (velocities, counters) = ([&state.velocity[..], &motion.predicted], &mut state.counters);
     settle_contacts(setting, step, velocities, contacts, &mut state.contacts, outcomes, counters);
     settle_supports(&supports.rows, &mut state.support_force);
     let mut works = contact_works(model, step.kick, velocities, outcomes, supports);
-    if has_bonds(&state.laws) {
+    if has_bonds {
         let (histories, bonds) = (&mut state.contacts[..], &mut state.bonds);
         let mut bonds = Bonds { setting, step, velocities, contacts, histories, bonds, counters };
         begin_sections(&model.sections, &setting, sections);
@@ -61,7 +62,7 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
 
 /// Keeps what was found out about the contacts, unless bonds change them or displacements are small.
 fn keep_found(model: &Model, state: &mut State, frames: &Frames, selection: &mut SelectionBuffers) {
-    if has_bonds(&state.laws) || selection.kept_gaps.is_some() {
+    if has_bonds(model, state) || selection.kept_gaps.is_some() {
         state.found.forget();
     } else {
         state.found.take_over(&mut selection.accepted.found, frames, state.step, &model.detection);

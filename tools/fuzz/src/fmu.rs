@@ -35,7 +35,7 @@ impl Fmu {
     pub fn new(case: &str, version: Version) -> Result<Self, String> {
         let loaded: LoadedCase = parse_case(case, "case.toml", Path::new("")).map_err(|error| error.to_string())?;
         let model = loaded.cosimulation().map_err(|error| error.to_string())?;
-        let table = Table::new(&loaded.case, model.block_states().len(), &loaded.hash, version);
+        let table = Table::new(&loaded.case, model.blocks_max(), &loaded.hash, version);
         let folder = std::env::temp_dir().join(format!("enmm-host-{}-{version:?}", std::process::id()));
         let resources = folder.join("resources");
         let text = resource::encode(&loaded, "case").map_err(|error| error.to_string())?;

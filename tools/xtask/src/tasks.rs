@@ -10,7 +10,7 @@ const BENCHMARK: &str = "tools/bench";
 /// A run that draws contours.
 const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
 /// Pictures of the README and of the tutorials: command, case, picture of its results, and its place in `docs`.
-const PICTURES: [[&str; 4]; 17] = [
+const PICTURES: [[&str; 4]; 20] = [
     ["run", "fractured_slope", "model.png", "pictures/model.png"],
     ["run", "fractured_slope", "deformed.png", "pictures/deformed.png"],
     ["run", "fractured_slope", "history.png", "pictures/history.png"],
@@ -28,6 +28,9 @@ const PICTURES: [[&str; 4]; 17] = [
     ["run", "pit", "deformed.png", "book/pictures/pit_deformed.png"],
     ["run", "pit", "stage4_joints.png", "book/pictures/pit_joints.png"],
     ["fos", "pit", "failure.png", "book/pictures/pit_failure.png"],
+    ["run", "../breaking/overhang", "deformed.png", "book/pictures/overhang_deformed.png"],
+    ["run", "../breaking/columns", "deformed.png", "book/pictures/columns_deformed.png"],
+    ["run", "../breaking/slab", "deformed.png", "book/pictures/slab_deformed.png"],
 ];
 
 /// Coupling examples, which each draw a picture.
@@ -81,7 +84,7 @@ pub fn write_pictures(repository: &Repository) -> Result<(), String> {
     let docs = repository.root.join("docs");
     for (k, [command, case, picture, shown]) in PICTURES.into_iter().enumerate() {
         let first = PICTURES.iter().position(|other| other[..2] == [command, case]).unwrap_or(k);
-        let from = repository.target.join("picture-results").join(format!("{case}_{first}"));
+        let from = repository.target.join("picture-results").join(format!("{}_{first}", case.replace("../", "")));
         if first == k {
             let mut run = repository.command(repository.enmm());
             run.args(command.split(' ')).arg(format!("examples/cases/{case}.toml"));

@@ -11,20 +11,30 @@ use enmm_report::{
     Note, Outline, PAGE, Structures, write_page,
 };
 
+use crate::breaks::BreakRecord;
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, EdgeId};
 use enmm_io::LoadedCase;
-use enmm_observe::{BLOCK_QUANTITIES, BlockState, BondState, ContactState, Quantity, bond_states, node_loops};
+use enmm_observe::{
+    BLOCK_QUANTITIES, BlockState, BondState, ContactState, Quantity, STRENGTH_QUANTITIES, bond_states, node_loops,
+};
 use structures::{Beside, bolt_places};
 
 /// Numbers of blocks that the film of a model that moves leaves out: they never change, or follow from others of it.
 const LEFT_OUT: [&str; 8] =
     ["centroid_x", "centroid_y", "area", "mass", "kinetic_energy", "strain_energy", "contacts", "speed"];
 
+/// Ranges of the colours of numbers: a share of strength of 1 breaks.
+const RANGES: [(&str, [u32; 2]); 1] = [("strength_share", [0, 1])];
+
 /// Numbers of blocks in the film of a model that moves, by their names in `blocks.csv`.
-pub fn numbers() -> Vec<&'static str> {
-    BLOCK_QUANTITIES.iter().map(|quantity| quantity.name).filter(|name| !LEFT_OUT.contains(name)).collect()
+pub fn numbers(simulation: &Simulation) -> Vec<&'static str> {
+    simulation.block_quantities().map(|quantity| quantity.name).filter(is_shown).collect()
+}
+
+fn is_shown(name: &&str) -> bool {
+    !LEFT_OUT.contains(name)
 }
 
 /// A film of a model.
@@ -39,6 +49,8 @@ pub struct Film {
     corners: Vec<EdgeId>,
     /// Sections of rock that had broken when the outlines were written; none when they are to be written anew.
     breaks: Option<usize>,
+    /// Sections of rock whose break has been noted.
+    noted: usize,
 }
 
 /// Opening of a film beside the case and its model.
@@ -81,7 +93,8 @@ impl Film {
         // A film that goes on may end with frames from before the last break.
         let can_have_older = until.is_some() && simulation.model().breaking.is_some();
         let breaks = (!can_have_older).then(|| simulation.cuts().len());
-        Ok(Self { writer: writer.map_err(refused)?, path, page: directory.join(PAGE), numbers, corners, breaks })
+        let (writer, page) = (writer.map_err(refused)?, directory.join(PAGE));
+        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0 })
     }
 
     /// Appends the model as it is now.
@@ -130,6 +143,18 @@ impl Film {
             let (outlines, corners) = outlines(simulation);
             self.writer.outlines(time, &outlines).map_err(refused)?;
             (self.corners, self.breaks) = (corners, breaks);
+        }
+        self.note_breaks(simulation, time)
+    }
+
+    /// Notes the blocks that have broken since the last note. A film that goes on has all again.
+    ///
+    /// # Errors
+    /// As [`Film::open`].
+    pub fn note_breaks(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
+        for broken in BreakRecord::all(simulation).into_iter().skip(self.noted) {
+            self.note(time, &Note::Break(broken.note()))?;
+            self.noted += 1;
         }
         Ok(())
     }
@@ -228,6 +253,7 @@ impl Film {
 
     /// Forgets what has been kept back.
     pub fn discard(&mut self) {
+        self.forget_breaks();
         self.writer.discard();
     }
 
@@ -236,10 +262,16 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn cut(&mut self, until: f64) -> io::Result<()> {
+        self.forget_breaks();
+        self.writer.cut(until).map_err(refused)
+    }
+
+    /// Outlines after a break may be gone, and are written anew.
+    fn forget_breaks(&mut self) {
         if self.breaks != Some(0) {
             self.breaks = None;
+            self.noted = 0;
         }
-        self.writer.cut(until).map_err(refused)
     }
 
     /// Ends the film and writes its page.
@@ -258,7 +290,7 @@ fn refused(error: FilmError) -> io::Error {
 
 /// The quantity of blocks of that name.
 fn number(name: &str) -> Option<&'static Quantity<BlockState>> {
-    BLOCK_QUANTITIES.iter().find(|quantity| quantity.name == name)
+    BLOCK_QUANTITIES.iter().chain(&STRENGTH_QUANTITIES).find(|quantity| quantity.name == name)
 }
 
 fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &[&Quantity<BlockState>]) -> Head {
@@ -274,6 +306,7 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &
         name: quantity.name.to_owned(),
         unit: quantity.unit.to_owned(),
         meaning: quantity.text.to_owned(),
+        range: RANGES.iter().find(|(name, _)| *name == quantity.name).map(|(_, range)| *range),
     };
     Head {
         title: case.title.clone(),
@@ -355,7 +388,8 @@ mod tests {
 
     #[test]
     fn every_number_of_a_film_is_in_the_table_of_blocks_and_the_motion_comes_first() {
-        assert!(LEFT_OUT.iter().all(|name| number(name).is_some()));
-        assert!(numbers().starts_with(&enmm_report::MOTION));
+        assert!(LEFT_OUT.iter().chain(RANGES.iter().map(|(name, _)| name)).all(|name| number(name).is_some()));
+        let shown: Vec<&str> = BLOCK_QUANTITIES.iter().map(|quantity| quantity.name).filter(is_shown).collect();
+        assert!(shown.starts_with(&enmm_report::MOTION));
     }
 }

@@ -33,7 +33,8 @@ const POLYGON: u8 = 7;
 /// XX, YY, ZZ, XY, YZ, XZ, of which YZ and XZ are zero), its parts `stress_xx`, `stress_yy`,
 /// `stress_xy`, the principal stresses in the plane `principal_max` and `principal_min` (so that the greatest
 /// compression is `principal_min`), `mean_stress` = (xx + yy)/2, `max_shear` = √(((xx − yy)/2)² + xy²) (all Pa),
-/// `block`, `rock`, and `plastic_strain` = √(⅔ εp:εp) where rock can yield. Field data: `TimeValue` (s), `rock_names`.
+/// `block`, `rock`, `plastic_strain` = √(⅔ εp:εp) where rock can yield, and `strength_share` of the worst section of
+/// the block where rock can break. Field data: `TimeValue` (s), `rock_names`.
 ///
 /// # Errors
 /// `InvalidInput` if a field does not have one entry per point or element; else what the file system refuses.
@@ -41,6 +42,8 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     let elements = &snapshot.elements;
     let yielding = !snapshot.plastic_strain.is_empty();
     let plastic = yielding.then(|| Array::numbers("plastic_strain", snapshot.plastic_strain.iter().copied()));
+    let breaking = !snapshot.strength_share.is_empty();
+    let shares = breaking.then(|| Array::numbers("strength_share", snapshot.strength_share.iter().copied()));
     let mut grid = Grid {
         time: snapshot.time,
         names: vec![Array::names("rock_names", &snapshot.rocks)],
@@ -56,7 +59,7 @@ pub fn write_vtu(snapshot: &Snapshot, path: &Path) -> io::Result<()> {
     };
     grid.cell_data.extend(numbers(&STRESS_QUANTITIES, &snapshot.stress));
     grid.cell_data.extend([Array::ids("block", &snapshot.block), Array::ids("rock", &snapshot.rock)]);
-    grid.cell_data.extend(plastic);
+    grid.cell_data.extend(plastic.into_iter().chain(shares));
     grid.write(path)
 }
 

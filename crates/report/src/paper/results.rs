@@ -48,10 +48,51 @@ pub fn run_chapter(records: &Records) -> String {
         part("Stages as they went", &stages),
         size,
         part("Bolts at the end of the run", &bolts),
+        part("Blocks that broke", &breaks(&run.json["breaks"])),
+        part("Blocks nearest to breaking at the end of the run", &worst_sections(&run.json["worst_sections"])),
         part("Histories", &histories),
         part("Ends of the stages", &stage_figures(run)),
     ];
     chapter("Run of the stages", &content.concat())
+}
+
+/// Blocks that broke, in the order of time.
+fn breaks(records: &Value) -> String {
+    let row = |broken: &Value| {
+        let parts =
+            vec![plain(&broken["block"], "", Digits::Typed).into(), plain(&broken["part"], "", Digits::Typed).into()];
+        [vec![plain(&broken["time"], "s", Three).into()], parts, section(broken)].concat()
+    };
+    let rows: Vec<Vec<Cell>> = entries(records).iter().map(row).collect();
+    table(&[&["Time", "Block", "New part"][..], &SECTION].concat(), &rows)
+}
+
+/// Blocks nearest to breaking, the worst first.
+fn worst_sections(records: &Value) -> String {
+    let row = |of: &Value| [vec![plain(&of["block"], "", Digits::Typed).into()], section(of)].concat();
+    let rows: Vec<Vec<Cell>> = entries(records).iter().map(row).collect();
+    table(&[&["Block"][..], &SECTION].concat(), &rows)
+}
+
+/// Columns of a section of rock.
+const SECTION: [&str; 7] = ["From (m)", "To (m)", "Breaks by", "Share of strength", "N, tension positive", "V", "M"];
+
+fn section(of: &Value) -> Vec<Cell> {
+    let end = |k: usize| {
+        let along = |axis: usize| plain(&of["ends"][k][axis], "", Three);
+        let both = along(0).zip(along(1));
+        both.map_or(Cell::Empty, |(x, y)| Cell::Mixed(vec![(String::new(), x), (", ".to_owned(), y)]))
+    };
+    let by = match text(&of["failure"]) {
+        "bends" => "bending",
+        "slides" => "shear",
+        "splits" => "its core",
+        _ => "tension",
+    };
+    let forces = [("normal", "N/m"), ("shear", "N/m"), ("moment", "N")];
+    let forces = forces.map(|(key, unit)| prefixed(&of[key], unit, Three).into());
+    let share = plain(&of["share"], "", Three).into();
+    [end(0), end(1), by.into(), share].into_iter().chain(forces).collect()
 }
 
 /// Joints whose slip the first page has.
@@ -106,6 +147,7 @@ fn stage_figures(run: &Record) -> String {
         ("displacement_contours", "displacement since the start of the stage"),
         ("joints", "joints that lock, slip and are open"),
         ("mean_stress_contours", "mean stress"),
+        ("strength", "share of strength of the worst section of each block"),
     ];
     let of_stage = |(k, stage): (usize, &Value)| {
         let name = text(&stage["name"]);

@@ -57,6 +57,19 @@ impl Slope {
         Self { outlines, noise }
     }
 
+    /// The same slope after a block has broken in two, from the middle of its first side to that of its third: the
+    /// part beyond has the next free number and stands behind all others.
+    pub fn broken(&self, block: usize) -> Self {
+        let (mut outlines, mut noise) = (self.outlines.clone(), self.noise.clone());
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| outlines[block].loops[0][k * PER_SIDE]);
+        let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let [from, to] = [middle(a, b), middle(c, d)];
+        outlines[block] = quadrilateral(outlines[block].id, [a, from, to, d]);
+        outlines.push(quadrilateral(outlines.len() as u32, [from, b, c, to]));
+        noise.push(noise[block]);
+        Self { outlines, noise }
+    }
+
     /// Corners of all blocks.
     pub fn corners(&self) -> usize {
         self.outlines.iter().flat_map(|block| &block.loops).map(Vec::len).sum()
@@ -181,7 +194,8 @@ impl Moment {
 }
 
 pub fn head() -> Head {
-    let number = |name: &str| BlockNumber { name: name.to_owned(), unit: "m".to_owned(), meaning: name.to_owned() };
+    let number =
+        |name: &str| BlockNumber { name: name.to_owned(), unit: "m".to_owned(), meaning: name.to_owned(), range: None };
     let column = |name: &str, quantity: &str, unit: &str| Column {
         name: name.to_owned(),
         quantity: quantity.to_owned(),

@@ -2,7 +2,6 @@
 
 use enmm::model::Simulation;
 use enmm::model::case::{Case, Stage, StageKind};
-use enmm::model::tables::BlockId;
 
 use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
 
@@ -50,6 +49,11 @@ pub fn mechanisms(
     let mut found = vec![factor_of_safety(case, options, hear)?];
     let mut case = case.clone();
     while let Some(last) = found.last().filter(|last| goes_on(&found, last, which)) {
+        if !last.simulation.cuts().is_empty() {
+            let message = "no further mechanism is looked for: parts of blocks that have broken cannot be cleared away";
+            found.last_mut().into_iter().for_each(|last| last.warnings.push(message.to_owned()));
+            break;
+        }
         let failing = last.first_unstable().map_or(&[][..], |trial| &trial.failing);
         let statics = case.stages.iter().take_while(|stage| stage.kind == StageKind::Static).count();
         let cleared = without(&case.stages[..statics], &last.simulation, failing);
@@ -82,10 +86,10 @@ fn goes_on(found: &[Reduction], last: &Reduction, which: MechanismOptions) -> bo
 /// A static stage after those that there are, as long as the last, in which blocks are cleared away.
 fn without(stages: &[Stage], simulation: &Simulation, failing: &[FailingBlock]) -> Stage {
     let last = &stages[stages.len() - 1];
-    let inside = |block: &FailingBlock| simulation.model().covers.point_inside(BlockId::new(block.block as usize));
+    let blocks = failing.iter().filter_map(|block| simulation.block_labelled(block.block));
     Stage {
         convergence: last.convergence,
-        excavate: failing.iter().map(|block| inside(block).into()).collect(),
+        excavate: blocks.map(|block| simulation.model().covers.point_inside(block).into()).collect(),
         ..Stage::plain(stages, "cleared", StageKind::Static, last.duration)
     }
 }

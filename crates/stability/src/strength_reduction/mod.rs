@@ -288,13 +288,14 @@ pub fn factor_of_safety(
     let range = [options.low.unwrap_or(FACTOR_RANGE[0]), options.high.unwrap_or(FACTOR_RANGE[1])];
     let start = bracket::start(limits, opinion.foretold(options.tolerance), range);
     let search = bracket::Search::new(start, range, options.tolerance);
-    let geometry = if case.yields() { Geometry::Real } else { Geometry::Drawn };
+    // Blocks that break are others than those whose contacts the drawing has.
+    let geometry = if case.yields() || case.breaks() { Geometry::Real } else { Geometry::Drawn };
     let setting = Setting { geometry, left_out: Vec::new() };
     let mut trials = Trials { base: &base, interrupt: options.interrupt, hear, made: 0, start: None };
     let held = trials.series(search.clone(), &setting);
     let lost = lost::look(&mut trials, &held, &setting, &search);
     let both: Vec<&Series> = std::iter::once(&held).chain(&lost).collect();
-    let carrying = corners::carrying(&base.simulation, &both);
+    let carrying = if case.breaks() { Vec::new() } else { corners::carrying(&base.simulation, &both) };
     let (series, lost, corners, setting) = if carrying.is_empty() || held.low.is_none() {
         (held, lost, None, setting)
     } else {

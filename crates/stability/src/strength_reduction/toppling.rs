@@ -1,7 +1,6 @@
 //! Nudges of a slope that fails by turning: without dilation its rest depends on the path (theory, section 16).
 
 use enmm::geometry::Vector;
-use enmm::model::tables::BlockId;
 use enmm::model::{Mechanism, Simulation};
 
 use super::bracket::Search;
@@ -87,14 +86,15 @@ fn turns(mechanism: Option<Mechanism>) -> bool {
 /// Width (m) of a block: that of a rectangle of the same area and perimeter.
 fn width(simulation: &Simulation, block: &FailingBlock) -> f64 {
     let boundary = &simulation.model().boundary;
-    let thickness = boundary.block_thickness[BlockId::new(block.block as usize)];
+    let own = simulation.block_labelled(block.block);
+    let thickness = own.map_or(f64::INFINITY, |own| boundary.block_thickness[own]);
     let half = block.area / thickness;
     0.5 * (half - (half * half - 4.0 * block.area).max(0.0).sqrt())
 }
 
 /// A warning where blocks turn that have too few elements over their width.
 pub fn coarse(base: &Base, series: &Series, mechanism: Option<Mechanism>) -> Option<String> {
-    let simulation = &base.simulation;
+    let simulation = series.unstable.as_ref().unwrap_or(&base.simulation);
     let trial = series.trial(series.high).filter(|_| turns(mechanism))?;
     let wanted = if simulation.case().yields() { ELEMENTS_YIELDING } else { ELEMENTS };
     let size = simulation.model().covers.mesh.size;

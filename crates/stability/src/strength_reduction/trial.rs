@@ -1,5 +1,6 @@
 //! One trial: the strength falls from that of the slope at rest to 1/F of its own, and the motion is judged.
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -10,7 +11,7 @@ use super::setting::{Geometry, Setting};
 use super::slip::{ELASTIC, height_and_gravity, largest_slip};
 use super::{End, FailingBlock, Trial};
 use enmm::geometry::Vector;
-use enmm::model::tables::BlockId;
+use enmm::model::tables::{BlockId, Model};
 use enmm::model::{BoltCondition, BoltState, Ledger, Mechanism, Simulation, StepError, StepReport};
 
 /// Samples while a wave of gravity's own time √(H/g) passes.
@@ -82,6 +83,7 @@ impl Fall {
 }
 
 /// Common start of all trials.
+#[derive(Clone)]
 pub struct Base {
     /// The slope at rest.
     pub simulation: Simulation,
@@ -135,8 +137,17 @@ impl Base {
         BlockId::all(self.free.len()).filter(|&b| self.free[b])
     }
 
+    /// This start with the sections cut that have broken in a trial since, so that both have the same blocks.
+    fn with_breaks_of(&self, trial: &Simulation) -> Cow<'_, Self> {
+        if self.simulation.cuts().len() == trial.cuts().len() {
+            return Cow::Borrowed(self);
+        }
+        let simulation = self.simulation.with_breaks_of(trial);
+        Cow::Owned(Self { free: free(&simulation), simulation, ..*self })
+    }
+
     /// Displacements (m) of all free blocks: along x, along y, and by turning at their own radius.
-    fn positions(&self, simulation: &Simulation) -> Vec<(BlockId, Vector3<f64>)> {
+    fn positions(&self, simulation: &Simulation) -> Positions {
         let position = |b: BlockId| {
             let motion = simulation.motion_of(b);
             let turn = motion.rotation * (motion.area / std::f64::consts::PI).sqrt();
@@ -228,7 +239,7 @@ impl Base {
         let scales = self.scales.of(fall.map_or(0.0, |fall| fall.time), begun_as.geometry);
         let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
-        let mut positions = self.positions(&simulation);
+        let mut blocks = Blocks::of(self, &simulation);
         let steps = simulation.steps_in(scales.window);
         let (mut first, mut residual) = (None, 0.0);
         let mut judged = None;
@@ -242,11 +253,8 @@ impl Base {
                 }
             };
             let first = *first.get_or_insert(last.ledger);
-            let before = std::mem::replace(&mut positions, self.positions(&simulation));
-            let few = self.few(&simulation);
-            let both = positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
-            let way = both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max);
-            let sample = self.sample(&simulation, &last, &first, way, &few);
+            let (way, few) = blocks.follow(&simulation);
+            let sample = blocks.base.sample(&simulation, &last, &first, way, &few);
             residual = open_since(fall.is_none().then_some(&first), &last.ledger);
             samples.push(Sample { time: simulation.time() - start, ..sample });
             judged = judge::judge(&samples, &scales);
@@ -264,8 +272,8 @@ impl Base {
             kinetic: end.kinetic,
             released: end.released,
             acceleration: judge::acceleration(&samples),
-            failing: self.failing(&simulation, verdict),
-            loose: self.loose(&simulation),
+            failing: blocks.base.failing(&simulation, verdict),
+            loose: blocks.base.loose(&simulation),
             // Slip that stretches bars of which none has yielded is elastic.
             is_far: end.displacement > self.far && (yields || !has_bars),
             bars_yield: yields,
@@ -279,8 +287,9 @@ impl Base {
 
     /// The way in which blocks have moved since the trial began; none where nothing fails.
     pub fn mechanism(&self, simulation: &Simulation, failing: &[FailingBlock]) -> Option<Mechanism> {
-        let blocks: Vec<BlockId> = failing.iter().map(|block| BlockId::new(block.block as usize)).collect();
-        simulation.mechanism_since(&self.simulation.state().displacement, &blocks)
+        let blocks: Vec<BlockId> = failing.iter().filter_map(|block| simulation.block_labelled(block.block)).collect();
+        let begun = &self.simulation;
+        simulation.mechanism_since(&simulation.after_breaks(begun.cuts().len(), &begun.state().displacement), &blocks)
     }
 
     /// The motion at the end of a window in which the fastest block has gone a way (m), without that of a few.
@@ -324,7 +333,7 @@ impl Base {
                 let (_, velocity, spin, _) = simulation.rigid_motion_of(b);
                 let radius = (model.covers.block_area(b) / std::f64::consts::PI).sqrt();
                 FailingBlock {
-                    block: b.number(),
+                    block: model.labels[b],
                     position: model.covers.block_centroid(b),
                     area: model.covers.block_area(b),
                     mass: model.mass_matrix.total[b],
@@ -339,9 +348,9 @@ impl Base {
 
     /// Blocks that are too few to decide about the slope and have gone farther than elasticity explains.
     fn loose(&self, simulation: &Simulation) -> Vec<FailingBlock> {
-        let few = self.few(simulation);
-        let is_loose =
-            |m: &FailingBlock| m.displacement > self.scales.elastic && few.iter().any(|b| b.number() == m.block);
+        let labels = &simulation.model().labels;
+        let few: Vec<u32> = self.few(simulation).into_iter().map(|block| labels[block]).collect();
+        let is_loose = |m: &FailingBlock| m.displacement > self.scales.elastic && few.contains(&m.block);
         self.motions(simulation).into_iter().filter(is_loose).collect()
     }
 
@@ -360,6 +369,51 @@ impl Base {
         motions.sort_by(|a, b| b.speed.total_cmp(&a.speed).then(a.block.cmp(&b.block)));
         motions
     }
+}
+
+/// Displacements (m) of blocks.
+type Positions = Vec<(BlockId, Vector3<f64>)>;
+
+/// Blocks of a trial from window to window, beside the same blocks of its start.
+struct Blocks<'a> {
+    /// The start as the trial began.
+    start: &'a Base,
+    /// The start with what has broken in the trial since.
+    base: Cow<'a, Base>,
+    /// Where the blocks have come to at the end of the last window.
+    positions: Positions,
+}
+
+impl<'a> Blocks<'a> {
+    fn of(start: &'a Base, trial: &Simulation) -> Self {
+        let base = start.with_breaks_of(trial);
+        Self { positions: base.positions(trial), start, base }
+    }
+
+    /// Takes up a window; the way (m) of the fastest block in it, without those too few to decide, and these.
+    fn follow(&mut self, trial: &Simulation) -> (f64, Vec<BlockId>) {
+        if self.base.simulation.cuts().len() != trial.cuts().len() {
+            self.positions = parts_of(&self.positions, self.base.simulation.model(), trial);
+            self.base = self.start.with_breaks_of(trial);
+        }
+        let before = std::mem::replace(&mut self.positions, self.base.positions(trial));
+        let few = self.base.few(trial);
+        let both = self.positions.iter().zip(&before).filter(|((b, _), _)| few.binary_search(b).is_err());
+        (both.map(|((_, now), (_, before))| (now - before).norm()).fold(0.0, f64::max), few)
+    }
+}
+
+/// Displacements of blocks of a model as those of their parts in a trial whose rock has broken since.
+fn parts_of(positions: &[(BlockId, Vector3<f64>)], model: &Model, trial: &Simulation) -> Positions {
+    let of = |label: u32| positions.iter().find(|(block, _)| model.labels[*block] == label).map(|(_, moved)| *moved);
+    let parent = |label: u32| trial.cuts().iter().find(|cut| cut.part == label).map(|cut| cut.block);
+    let free = free(trial);
+    let blocks = BlockId::all(free.len()).filter(|&block| free[block]);
+    let whole = |block: BlockId| {
+        let line = std::iter::successors(Some(trial.model().labels[block]), |&label| parent(label));
+        line.into_iter().find_map(of).unwrap_or_default()
+    };
+    blocks.map(|block| (block, whole(block))).collect()
 }
 
 /// Which blocks can move.

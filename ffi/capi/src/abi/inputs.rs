@@ -118,8 +118,8 @@ pub extern "C" fn enmm_set_joint_pressure(model: *mut enmm_model, port: u32, p: 
     with_model(model.addr(), |model| model.set_pressure(port, PortKind::Joint, p))
 }
 
-/// Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints are multiplied; 1 is the
-/// strength of the case.
+/// Sets the factor by which cohesion, tan(friction angle) and tensile strength of all joints and of rock that yields or
+/// breaks are multiplied; 1 is the strength of the case.
 ///
 /// Acts at the same times as enmm_set_gravity.
 ///

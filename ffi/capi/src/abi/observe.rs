@@ -9,7 +9,9 @@ use crate::safe::enter::with_model;
 use crate::safe::failure::Failure;
 use crate::types::*;
 
-/// Returns the number of blocks, excavated ones included. It never changes.
+/// Returns the number of blocks, excavated ones included. It grows when rock breaks and when a stage parts blocks, and
+/// falls only with a return to an earlier state; without `fracture` and cuts in the case it never changes. Blocks keep
+/// their ids.
 ///
 /// Errors: ENMM_NULL_ARGUMENT.
 ///
@@ -135,6 +137,40 @@ pub unsafe extern "C" fn enmm_get_events(
 ) -> enmm_status {
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe { pointers::fill_structs(&model.events(first), out, capacity, written) })
+}
+
+/// Returns the most blocks that the model can have: those of its last stage, and fracture.parts_max more where rock can
+/// break.
+///
+/// Errors: ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_blocks_max(model: *mut enmm_model, count: *mut usize) -> enmm_status {
+    with_model(model.addr(), |model| {
+        // SAFETY: promised by the host.
+        unsafe { pointers::write("count", count, model.inner.blocks_max()) }
+    })
+}
+
+/// Writes the sections of rock that have broken, in order. A return to a saved state restores its own.
+///
+/// Buffer and errors as enmm_get_block_states.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_cuts(
+    model: *mut enmm_model,
+    out: *mut enmm_cut,
+    capacity: usize,
+    written: *mut usize,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe {
+        pointers::fill_made(model.cuts().len(), || model.cuts(), out, capacity, written)
+    })
 }
 
 /// Writes the current outer outline of a block, counter-clockwise, as x, y, x, y, ... (m).

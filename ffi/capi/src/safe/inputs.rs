@@ -56,12 +56,8 @@ impl Model {
     /// # Errors
     /// A block that does not exist.
     pub fn block_force(&self, block: u32) -> Result<([f64; 2], f64), Failure> {
-        let inputs = self.inner.inputs();
-        let force = inputs.block_force.get(block as usize).ok_or_else(|| {
-            let count = inputs.block_force.len();
-            Failure::invalid(format!("block: is {block}, must be less than the number of blocks, {count}"))
-        })?;
-        Ok(([force.x, force.y], inputs.block_moment[block as usize]))
+        let (force, moment) = self.inner.block_force(block)?;
+        Ok(([force.x, force.y], moment))
     }
 
     /// Traction (Pa), pressure (Pa) and velocity (m/s) that are set on a port.

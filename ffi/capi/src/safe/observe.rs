@@ -1,6 +1,6 @@
 //! Values that hosts read, in the structures of C.
 
-use engine::cosimulation::{EventKind, PortKind};
+use engine::cosimulation::{EventKind, PortKind, SectionFailure};
 use engine::geometry::{Point, polygon};
 use engine::model::tables::BlockId;
 use engine::model::{ContactState, ContactView};
@@ -15,7 +15,8 @@ impl Model {
     pub fn block_states(&self) -> impl Iterator<Item = enmm_block_state> + '_ {
         let simulation = self.inner.simulation();
         let failed = &simulation.state().events.failed;
-        simulation.blocks().iter().map(|state| enmm_block_state::new(state, failed[state.id as usize]))
+        let has_failed = move |id: u32| simulation.block_labelled(id).is_some_and(|block| failed[block]);
+        self.inner.blocks().into_iter().map(move |state| enmm_block_state::new(state, has_failed(state.id)))
     }
 
     /// Number of blocks.
@@ -86,29 +87,44 @@ impl Model {
         self.inner.events().skip(first).map(of).collect()
     }
 
+    /// Sections of rock that have broken, in order.
+    pub fn cuts(&self) -> impl ExactSizeIterator<Item = enmm_cut> + '_ {
+        self.inner.cuts().map(|cut| enmm_cut {
+            struct_size: size_of::<enmm_cut>(),
+            block: cut.block,
+            part: cut.part,
+            failure: match cut.failure {
+                SectionFailure::Opens => enmm_section_failure::ENMM_SECTION_OPENED,
+                SectionFailure::Slides => enmm_section_failure::ENMM_SECTION_SLID,
+                SectionFailure::Bends => enmm_section_failure::ENMM_SECTION_BENT,
+                SectionFailure::Splits => enmm_section_failure::ENMM_SECTION_SPLIT,
+            },
+            reserved: 0,
+            time: cut.time,
+            first_x: cut.ends[0].x,
+            first_y: cut.ends[0].y,
+            second_x: cut.ends[1].x,
+            second_y: cut.ends[1].y,
+            share: cut.share,
+            normal_force: cut.carried.normal,
+            shear_force: cut.carried.shear,
+            moment: cut.carried.moment,
+        })
+    }
+
     /// Current boundary loops of a block, the outer one first.
     ///
     /// # Errors
     /// A block that does not exist or has been excavated.
     pub fn block_loops(&self, block: u32) -> Result<Vec<Vec<Point>>, Failure> {
-        let state = self.inner.simulation().state();
-        match state.removed.get(block as usize) {
-            None => {
-                let count = state.removed.len();
-                let message = format!("block: is {block}, must be less than the number of blocks, {count}");
-                Err(Failure::invalid(message))
-            }
-            Some(true) => {
-                let message = format!("block {block} has been excavated; look at its flags before");
-                Err(Failure::new(enmm_status::ENMM_NOT_FOUND, message))
-            }
-            Some(false) => {
-                let mut loops = self.loops(|of| of.number() == block);
-                let mut loops: Vec<_> = loops.drain(..).map(|(_, points)| points).collect();
-                loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
-                Ok(loops)
-            }
+        let own = self.inner.own_block(BlockId::new(block as usize))?;
+        if self.inner.simulation().state().removed[own] {
+            let message = format!("block {block} has been excavated; look at its flags before");
+            return Err(Failure::new(enmm_status::ENMM_NOT_FOUND, message));
         }
+        let mut loops: Vec<_> = self.loops(|of| of == own).into_iter().map(|(_, points)| points).collect();
+        loops.sort_by(|a, b| polygon::area(b).total_cmp(&polygon::area(a)));
+        Ok(loops)
     }
 
     /// The block whose rock covers a point now; the lowest id where blocks overlap or meet.
@@ -119,14 +135,15 @@ impl Model {
         if !(p.x.is_finite() && p.y.is_finite()) {
             return Err(Failure::invalid(format!("x, y: are {}, {}, must be finite numbers (m)", p.x, p.y)));
         }
-        let removed = &self.inner.simulation().state().removed;
+        let simulation = self.inner.simulation();
+        let (removed, labels) = (&simulation.state().removed, &simulation.model().labels);
         let loops = self.loops(|block| !removed[block]);
-        let mut around: Vec<BlockId> =
-            loops.iter().filter(|(_, points)| polygon::contains(points, p)).map(|(block, _)| *block).collect();
+        let mut around: Vec<u32> =
+            loops.iter().filter(|(_, points)| polygon::contains(points, p)).map(|(block, _)| labels[*block]).collect();
         around.sort_unstable();
         // A point in a hole is inside the outer loop and the loop of the hole: rock is where the count is odd.
         let found = around.chunk_by(|a, b| a == b).find(|same| same.len() % 2 == 1);
-        found.map(|same| same[0].number()).ok_or_else(|| {
+        found.map(|same| same[0]).ok_or_else(|| {
             Failure::new(enmm_status::ENMM_NOT_FOUND, format!("there is no rock at ({}, {}) m now", p.x, p.y))
         })
     }

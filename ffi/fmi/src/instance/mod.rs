@@ -98,8 +98,8 @@ impl Instance {
         let loaded = resource::load(plan.resources).map_err(|error| error.to_string())?;
         let model = loaded.cosimulation().map_err(|error| error.to_string())?;
         let blocks = model.simulation().model().covers.block_count();
-        check_blocks(&loaded.case, blocks)?;
-        let table = Table::new(&loaded.case, blocks, &loaded.hash, plan.version);
+        check_blocks(&loaded.case, model.blocks_max())?;
+        let table = Table::new(&loaded.case, model.blocks_max(), &loaded.hash, plan.version);
         if plan.token != table.token {
             let (given, own) = (plan.token, &table.token);
             return Err(format!("the token is {given}, must be {own}: give that of the model description of this FMU"));

@@ -124,13 +124,16 @@ impl Instance {
             }
             Quantity::Total(total) => values[0] = self.total(total),
             Quantity::Blocks(place) => {
-                let states = self.model.simulation().blocks();
+                let states = self.model.blocks();
                 let get = BLOCK_QUANTITIES[place].get;
+                // Parts that rock has not broken into yet have nothing.
+                values.fill(0.0);
                 values.iter_mut().zip(states).for_each(|(value, state)| *value = get(state));
             }
             Quantity::Block(block, place) => {
-                let state = self.model.simulation().blocks().get(block);
-                values[0] = state.map_or(0.0, |state| (BLOCK_QUANTITIES[place].get)(state));
+                let simulation = self.model.simulation();
+                let own = simulation.block_labelled(block as u32);
+                values[0] = own.map_or(0.0, |own| (BLOCK_QUANTITIES[place].get)(&simulation.blocks()[own.index()]));
             }
             Quantity::Snapshot
             | Quantity::Parameter(_)
@@ -169,6 +172,9 @@ impl Instance {
             Total::InternalDt => model.internal_step(),
             Total::EventCount => model.events().len() as f64,
             Total::LastEventTime => last.map_or(0.0, |event| self.experiment.start + event.time),
+            Total::PartCount => model.blocks().len() as f64,
+            Total::CutCount => model.cuts().len() as f64,
+            Total::CutLength => model.cuts().map(|cut| (cut.ends[1] - cut.ends[0]).norm()).sum(),
             Total::LastEventKind => last.map_or(0.0, |event| kind_number(event.kind)),
             Total::LastEventSubject => {
                 last.filter(|event| event.subject != u32::MAX).map_or(-1.0, |event| f64::from(event.subject))

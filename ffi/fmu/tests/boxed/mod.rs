@@ -24,7 +24,7 @@ impl<const FMI: u8> Fmu<FMI> {
         let loaded = parse_case(text, "box.toml", Path::new(".")).unwrap();
         let folder = tempfile::tempdir().unwrap();
         write_resources(&loaded, &folder.path().join("resources"));
-        let blocks = loaded.cosimulation().unwrap().block_states().len();
+        let blocks = loaded.cosimulation().unwrap().blocks_max();
         let table = Table::new(&loaded.case, blocks, &loaded.hash, version);
         Self { folder, table }
     }
