@@ -350,9 +350,7 @@ impl Cosimulation {
 
     /// The same, worked out at the first look after a step.
     pub fn blocks(&self) -> Vec<&BlockState> {
-        let mut states: Vec<&BlockState> = self.simulation.blocks().iter().collect();
-        states.sort_unstable_by_key(|state| state.id);
-        states
+        self.simulation.blocks_by_number()
     }
 
     /// Sections of rock that have broken so far, in order; their times count as [`Cosimulation::time`] does.

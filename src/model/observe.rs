@@ -194,6 +194,13 @@ impl Simulation {
         })
     }
 
+    /// The same by the numbers that hosts and files show.
+    pub fn blocks_by_number(&self) -> Vec<&BlockState> {
+        let mut states: Vec<&BlockState> = self.blocks().iter().collect();
+        states.sort_unstable_by_key(|state| state.id);
+        states
+    }
+
     /// Adds the area means of stress, and the strain energies of all blocks.
     fn add_stresses(&self, states: &mut [BlockState]) {
         let covers = &self.model().covers;

@@ -18,7 +18,7 @@ pub fn write_blocks(path: &Path, simulation: &Simulation) -> io::Result<()> {
     let numbers: Vec<&Quantity<BlockState>> = simulation.block_quantities().collect();
     let mut csv = csv::Writer::from_writer(Vec::new());
     csv.write_record(header(&numbers)).map_err(io::Error::from).map_err(at_path(path))?;
-    for block in simulation.blocks() {
+    for block in simulation.blocks_by_number() {
         csv.write_record(row(block, &numbers)).map_err(io::Error::from).map_err(at_path(path))?;
     }
     let bytes = csv.into_inner().map_err(csv::IntoInnerError::into_error).map_err(at_path(path))?;

@@ -2,7 +2,6 @@
 //! that fails, and gives the same bits at any thread count.
 
 use crate::common::parts::{rock, turn};
-use enmm::model::case::StageCut;
 use enmm_stability::strength_reduction::{
     End, MechanismOptions, Reduction, ReductionError, ReductionOptions, Verdict, factor_of_safety, mechanisms,
 };
@@ -158,10 +157,6 @@ fn what_cannot_be_judged_is_an_error_or_an_end() {
     let find = |case: &_, options: ReductionOptions| factor_of_safety(case, &options, &mut |_, _| {});
     let error = find(&no_rest, ReductionOptions::default()).expect_err("no static stage");
     assert!(matches!(&error, ReductionError::Case(invalid) if invalid.key == "stage[0].kind"), "{error}");
-    let mut cut = case(40.0, 0.0, "");
-    cut.stages[0].cuts = vec![StageCut { points: vec![[0.0, 0.0], [1.0, 0.0]], law: "joint".to_owned() }];
-    let error = find(&cut, ReductionOptions::default()).expect_err("a cut");
-    assert!(matches!(&error, ReductionError::Case(invalid) if invalid.key == "stage[0].cut[0]"), "{error}");
     let mut short = case(40.0, 0.0, "");
     short.stages[0].duration = 1e-3;
     let error = find(&short, ReductionOptions::default()).expect_err("no time to come to rest");
