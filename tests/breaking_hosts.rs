@@ -128,6 +128,8 @@ fn the_part_with_the_port_keeps_its_number_and_its_force() {
     model.set_block_force(block, [0.0, -1e4], 0.0).unwrap_or_else(|e| panic!("{e}"));
     let early = model.set_block_force(1u32, [0.0, 0.0], 0.0).expect_err("there is no part yet").to_string();
     assert!(early.contains("block: is 1, must be less than the number of blocks, 1"), "{early}");
+    let none = model.own_block(u32::MAX).expect_err("there is no such block").to_string();
+    assert!(none.contains("block: is 4294967295, must be less than"), "{none}");
     go(&mut model, END, MILLI);
     let states = model.block_states();
     assert_eq!(states.iter().map(|state| state.id).collect::<Vec<_>>(), [0, 1]);

@@ -113,7 +113,7 @@ impl Cosimulation {
     /// # Errors
     /// A block that does not exist.
     pub fn block_force(&self, block: impl Into<BlockId>) -> Result<(Vector, f64), CosimulationError> {
-        let (block, inputs) = (self.own_block(block.into())?, self.inputs());
+        let (block, inputs) = (self.own_block(block)?, self.inputs());
         Ok((inputs.block_force[block], inputs.block_moment[block]))
     }
 
@@ -187,7 +187,7 @@ impl Cosimulation {
     /// The input that exists, which for a port of a block is that of its block.
     pub(super) fn own_input(&self, input: Input) -> Result<Input, CosimulationError> {
         match input {
-            Input::Block(block) => self.own_block(BlockId::new(block as usize)).map(|_| input),
+            Input::Block(block) => self.own_block(block).map(|_| input),
             Input::Port(port) => Ok(match self.port(port as usize)?.kind {
                 PortKind::Block => Input::Block(self.port_block(port as usize)?),
                 _ => input,
@@ -209,7 +209,8 @@ impl Cosimulation {
     ///
     /// # Errors
     /// There is none.
-    pub fn own_block(&self, block: BlockId) -> Result<BlockId, CosimulationError> {
+    pub fn own_block(&self, block: impl Into<BlockId>) -> Result<BlockId, CosimulationError> {
+        let block = block.into();
         self.simulation.block_labelled(block.number()).ok_or_else(|| {
             let limit = format!("less than the number of blocks, {}", self.simulation.model().covers.block_count());
             CosimulationError::value("block", block, &limit, "ask for the states of the blocks to see their ids")

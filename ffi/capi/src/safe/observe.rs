@@ -117,7 +117,7 @@ impl Model {
     /// # Errors
     /// A block that does not exist or has been excavated.
     pub fn block_loops(&self, block: u32) -> Result<Vec<Vec<Point>>, Failure> {
-        let own = self.inner.own_block(BlockId::new(block as usize))?;
+        let own = self.inner.own_block(block)?;
         if self.inner.simulation().state().removed[own] {
             let message = format!("block {block} has been excavated; look at its flags before");
             return Err(Failure::new(enmm_status::ENMM_NOT_FOUND, message));
