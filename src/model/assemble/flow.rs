@@ -95,12 +95,7 @@ fn heads(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<HeldHead>, In
                 return Err(invalid(&key, message));
             }
         }
-        let mut now = *level;
-        let of_stage = |stage: &case::Stage| {
-            now = stage.heads.get(name).copied().unwrap_or(now);
-            now
-        };
-        let levels = case.stages.iter().map(of_stage).collect();
+        let levels = super::rain::by_stage(case, *level, |stage| stage.heads.get(name));
         heads.push(HeldHead { name: name.clone(), nodes, levels });
     }
     Ok(heads)

@@ -29,12 +29,7 @@ pub(super) fn rains(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<Fa
                 return Err(Invalid { key, message });
             }
         }
-        let mut now = *rate;
-        let of_stage = |stage: &Stage| {
-            now = stage.rain.get(name).copied().unwrap_or(now);
-            now
-        };
-        let rates = case.stages.iter().map(of_stage).collect();
+        let rates = by_stage(case, *rate, |stage| stage.rain.get(name));
         rains.push(FallingRain { name: name.clone(), outcrops, rates });
     }
     Ok(rains)
@@ -58,4 +53,14 @@ fn shares(net: &FlowNet, [a, b]: [Point; 2], tolerance: f64) -> Vec<(u32, f64)> 
         (*node, (borders.get(k).copied().unwrap_or(1.0) - from) * plan)
     };
     nodes.iter().enumerate().map(share).collect()
+}
+
+/// A number at the start of each stage, which goes on until a stage gives another.
+pub(super) fn by_stage<'a>(case: &'a Case, start: f64, of: impl Fn(&'a Stage) -> Option<&'a f64>) -> Vec<f64> {
+    let mut now = start;
+    let in_stage = |stage: &'a Stage| {
+        now = of(stage).copied().unwrap_or(now);
+        now
+    };
+    case.stages.iter().map(in_stage).collect()
 }

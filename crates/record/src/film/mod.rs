@@ -266,7 +266,7 @@ impl Film {
         self.writer.cut(until).map_err(refused)
     }
 
-    /// Outlines after a break may be gone, and are written anew.
+    /// Outlines after a break may be gone, and are written again.
     fn forget_breaks(&mut self) {
         if self.breaks != Some(0) {
             self.breaks = None;

@@ -172,7 +172,7 @@ impl Instance {
             Total::InternalDt => model.internal_step(),
             Total::EventCount => model.events().len() as f64,
             Total::LastEventTime => last.map_or(0.0, |event| self.experiment.start + event.time),
-            Total::PartCount => model.blocks().len() as f64,
+            Total::PartCount => model.inputs().block_force.len() as f64,
             Total::CutCount => model.cuts().len() as f64,
             Total::CutLength => model.cuts().map(|cut| (cut.ends[1] - cut.ends[0]).norm()).sum(),
             Total::LastEventKind => last.map_or(0.0, |event| kind_number(event.kind)),
