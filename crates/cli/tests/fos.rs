@@ -113,20 +113,26 @@ fn bad_input_exits_with_2_and_writes_nothing() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_exits_with_130_and_keeps_the_trials() {
+    use std::io::{BufRead, BufReader};
     use std::process::Command;
-    use std::time::Duration;
 
     use crate::support::Outcome;
 
-    let place = Place::with(&incline(0.65, "").replace("size = 0.9", "size = 0.12"));
-    let child = place.start(&["fos", "case.toml", "-o", "out"]);
-    std::thread::sleep(Duration::from_millis(500));
+    let place = Place::with(&incline(0.65, "").replace("size = 0.9", "size = 0.06"));
+    let mut child = place.start(&["fos", "case.toml", "-o", "out"]);
+    let mut rows = BufReader::new(child.stdout.take().expect("its output"));
+    let mut row = String::new();
+    while !row.starts_with("1 of ~") {
+        row.clear();
+        assert!(rows.read_line(&mut row).expect("text") > 0, "it ended before its first trial");
+    }
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs").success());
+    child.stdout = Some(rows.into_inner());
     let answer = Outcome::of(child.wait_with_output().expect("an end"));
     assert_eq!(answer.status, Some(130), "{answer:?}");
-    if place.path("out/fos.json").exists() {
-        assert_eq!(json(&place.path("out/fos.json"))["status"], "interrupted");
-    }
+    let found = json(&place.path("out/fos.json"));
+    assert_eq!(found["status"], "interrupted");
+    assert!(found["trials"].as_array().is_some_and(|trials| !trials.is_empty()), "{found}");
 }
 
 /// The wedge of the template above its fault: 94.605 m², 40°, c = 40 kPa, φ = 32°, bolts that fall by 10°. With T on
