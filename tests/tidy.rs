@@ -16,7 +16,7 @@ const ROOMS: [(&str, usize); 12] = [
     ("flow", 700),
     ("state", 2250),
     ("step", 3550),
-    ("fracture", 1200),
+    ("fracture", 1260),
     ("recut", 1150),
     ("model", 7200),
     ("cosimulation", 2_800),
