@@ -5,6 +5,7 @@ mod bonds;
 mod breaking;
 mod failure;
 pub mod fit;
+mod flowing;
 mod grounds;
 mod looks;
 pub mod mechanism;
@@ -26,6 +27,7 @@ pub use enmm_case::Case;
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
+pub use flowing::{Flowing, FlowingInlet, FlowingPiece};
 pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{
     BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,

@@ -21,7 +21,7 @@ impl Simulation {
     pub(super) fn find_flow(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         let (model, state) = (&self.built.model, &self.state);
         let Some(net) = &model.flow else { return Ok(()) };
-        let seen = Seen { model, state, net, stage, start };
+        let seen = Seen { model, state, net, stage, start, moved: &state.displacement };
         self.state.seepage = Some(seen.steady().map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
         Ok(())
     }
@@ -83,7 +83,9 @@ impl Simulation {
     pub fn flow_survey(&self) -> Option<FlowSurvey> {
         let (model, state) = (&self.built.model, &self.state);
         let net = model.flow.as_ref()?;
-        Some(Seen { model, state, net, stage: state.stage as usize, start: self.time() }.survey())
+        let seen =
+            Seen { model, state, net, stage: state.stage as usize, start: self.time(), moved: &state.displacement };
+        Some(seen.survey())
     }
 }
 
@@ -100,12 +102,14 @@ fn told(net: &FlowNet, stage: &str, failure: &Failure) -> Invalid {
 }
 
 /// A model at the start of a stage, whose changes have been made.
-struct Seen<'a> {
-    model: &'a Model,
-    state: &'a State,
-    net: &'a FlowNet,
-    stage: usize,
-    start: f64,
+pub(super) struct Seen<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    pub net: &'a FlowNet,
+    pub stage: usize,
+    pub start: f64,
+    /// Displacements (m) of the covers at its start.
+    pub moved: &'a [Vector],
 }
 
 impl Seen<'_> {
@@ -154,8 +158,7 @@ impl Seen<'_> {
 
     /// Conductance (m²/s per m of head) of each piece; 0 where blocks are gone, bonds hold or the law is closed.
     fn conductance(&self) -> Vec<f64> {
-        let drive = &self.state.drive;
-        let weight = self.state.water_density * drive.gravity(drive.share(self.start)).norm();
+        let weight = self.weight();
         let bonds = bond_states(self.model, self.state);
         let conducts = |piece: &FlowPiece| {
             let holds = piece.edges.iter().any(|edge| bonds[edge.index()] == BondState::Holds);
@@ -169,8 +172,14 @@ impl Seen<'_> {
         self.net.pieces.iter().map(of_piece).collect()
     }
 
+    /// Unit weight of the water (N/m³).
+    pub fn weight(&self) -> f64 {
+        let drive = &self.state.drive;
+        self.state.water_density * drive.gravity(drive.share(self.start)).norm()
+    }
+
     /// Condition at each node, and which inlet it is.
-    fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
+    pub fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
         let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
         let conducts = self.net.conducting(conductance);
         self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths, conducts: &conducts })
@@ -185,10 +194,10 @@ impl Seen<'_> {
     }
 
     /// Apertures (m) at both ends of a piece, by what it has opened since the start.
-    fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
+    pub fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
         let (boundary, law) = (&self.model.boundary, self.state.law_switch[piece.law]);
         let stars = &self.model.covers.star_position;
-        let moved = |point: EdgeId| boundary.sample(point, &self.state.displacement);
+        let moved = |point: EdgeId| boundary.sample(point, self.moved);
         let place = |point: EdgeId| boundary.sample(point, stars) + moved(point);
         let [a, b] = [piece.edges[0], boundary.after(piece.edges[0])].map(place);
         let along = (b - a) / (b - a).norm().max(f64::MIN_POSITIVE);
