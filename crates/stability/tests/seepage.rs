@@ -103,3 +103,21 @@ fn rock_that_yields_has_no_bracket_with_water_that_flows() {
         other => panic!("{other:?}"),
     }
 }
+
+/// With stiff joints apertures stay as they were; with soft ones the weight has closed them before the second stage,
+/// more at depth, and the trials have other water than limit analysis, which knows no openings.
+#[test]
+fn other_water_in_trials_than_in_limit_analysis_is_told() {
+    let text = slide(&[1e-4; 4]);
+    let again = text.split("[[stage]]").nth(1).expect("a stage").replace("gravity", "again");
+    let told = |stiffness: f64| {
+        let law = format!("friction_deg = 35.0\nnormal_stiffness = {stiffness:e}\nshear_stiffness = {stiffness:e}\n");
+        let text = text.replace("friction_deg = 35.0\n", &law) + "[[stage]]" + &again;
+        let options = ReductionOptions { tolerance: 0.5, ..ReductionOptions::default() };
+        let found = factor_of_safety(&case(&text), &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+        found.warnings.iter().find(|warning| warning.starts_with("water presses on the joints")).cloned()
+    };
+    assert_eq!(told(1e12), None);
+    let warning = told(1e10).expect("a warning");
+    assert!(warning.contains("aperture_min"), "{warning}");
+}
