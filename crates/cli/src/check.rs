@@ -146,8 +146,9 @@ fn flow(survey: &FlowSurvey) -> String {
 /// Conductivity of the rock mass along the joints of a set.
 fn conductivity(SetConductivity { set, aperture, spacing, conductivity }: &SetConductivity) -> String {
     format!(
-        "{set}: conductivity {conductivity:.3e} m/s along its joints, of {} mm every {spacing:.4} m",
-        rounded(1e3 * aperture)
+        "{set}: conductivity {conductivity:.3e} m/s along its joints, of {} mm every {} m",
+        rounded(1e3 * aperture),
+        rounded(*spacing)
     )
 }
 
@@ -156,9 +157,10 @@ fn drainage(LawDrainage { law, aperture, height, time }: &LawDrainage) -> String
     let unit = [("days", 86400.0), ("h", 3600.0), ("min", 60.0)].into_iter().find(|(_, size)| time >= size);
     let (unit, size) = unit.unwrap_or(("s", 1.0));
     format!(
-        "joint_law.{law}: a joint of {} mm drains over {height:.4} m in {:.3} {unit}; steady flow is enough where \
+        "joint_law.{law}: a joint of {} mm drains over {} m in {:.3} {unit}; steady flow is enough where \
          levels, heads and rain change more slowly",
         rounded(1e3 * aperture),
+        rounded(*height),
         time / size
     )
 }

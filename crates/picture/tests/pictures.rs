@@ -11,8 +11,8 @@ use enmm::model::ContactState;
 use enmm_observe::{BondState, Boundary, DrainFlow, FlowLine, JointFlow, Polygons, Seep, Snapshot};
 use enmm_picture::{
     ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_contours,
-    displacement_picture, flow_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours, model_picture,
-    stage_displacement_picture, stress_picture, velocity_picture,
+    displacement_picture, flow_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours,
+    model_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
@@ -304,10 +304,10 @@ fn water_in_joints_shows_heads_flows_tables_outcrops_and_drains() {
     let picture = flow_picture(&stage, &flow);
     check(&picture, "stage_flow.png");
     let svg = picture.svg();
-    for text in ["row 0.3 L/min per m", "greatest 0.6 L/min per m", "seeping outcrop, all 0.12 L/min per m"] {
+    for text in ["row 0.300 L/min per m", "greatest 0.600 L/min per m", "seeping outcrop, all 0.120 L/min per m"] {
         assert!(svg.contains(&format!(">{text}<")), "{text}");
     }
-    for text in ["under pressure: 70 m", "without pressure: 28.3 m", "water table", "pressure head [m]"] {
+    for text in ["under pressure: 70.0 m", "without pressure: 28.3 m", "water table", "pressure head [m]"] {
         assert!(svg.contains(&format!(">{text}<")), "{text}");
     }
     // The deepest colour of the scale at its greatest width, and the table at a quarter of the second joint.

@@ -81,7 +81,8 @@ fn conductivities_of_sets_and_drain_times_of_laws_are_told() {
     assert!((tight / exact(1e-6) - 1.0).abs() < 1e-9, "{times:?}");
     assert!(told(&found, "flow").is_none(), "{:?}", found.warnings);
     let dry = "[flow]\n[[head]]\nname = \"left\"\nedge = [[0, 1], [0, 8]]\nlevel = 7.0\n";
-    let without = slab(1.0, 2e-4, "").replace(dry, "").replace("aperture = 2e-4\n", "").replace("aperture = 1e-6\n", "");
+    let without =
+        slab(1.0, 2e-4, "").replace(dry, "").replace("aperture = 2e-4\n", "").replace("aperture = 1e-6\n", "");
     let still = check(&without);
     assert!(still.flow.is_none() && still.conductivities.is_empty() && still.drain_times.is_empty());
 }
