@@ -24,6 +24,8 @@ pub enum Inlet {
 pub struct Outside<'a> {
     /// Stage, for the levels of heads.
     pub stage: usize,
+    /// Share of the way of heads and rain from those of the stage before to those of this one.
+    pub share: f64,
     /// Nodes at blocks that have been dug out, and what has come there.
     pub dug: &'a [Outcrop],
     /// Depth (m) below the surface of the reservoir at each node; negative above it, or where there is none.
@@ -35,6 +37,12 @@ pub struct Outside<'a> {
 /// Whether water can leave or enter a piece of net at a node with a condition; pumps take what others give.
 pub fn is_open(condition: &Condition) -> bool {
     !matches!(condition, Condition::Free { .. })
+}
+
+/// Value of a stage, or one on the way to it from that of the stage before.
+fn on_way(of_stages: &[f64], Outside { stage, share, .. }: Outside) -> f64 {
+    let to = of_stages[stage];
+    if share >= 1.0 || stage == 0 { to } else { of_stages[stage - 1] + (to - of_stages[stage - 1]) * share }
 }
 
 impl FlowNet {
@@ -58,7 +66,7 @@ impl FlowNet {
         };
         let mut found: Vec<_> = (0..self.places.len()).map(at).collect();
         for (k, held) in self.heads.iter().enumerate() {
-            let head = held.levels[outside.stage];
+            let head = on_way(&held.levels, outside);
             for &node in &held.nodes {
                 let condition = &mut found[node as usize];
                 if head >= self.places[node as usize].y {
@@ -68,7 +76,7 @@ impl FlowNet {
                 }
             }
         }
-        self.add_rain(outside.stage, &mut found);
+        self.add_rain(outside, &mut found);
         self.add_drains(outside, &mut found);
         found
     }
@@ -90,12 +98,12 @@ impl FlowNet {
     }
 
     /// Rain on outcrops that are open to the air.
-    fn add_rain(&self, stage: usize, found: &mut [(Condition, Option<Inlet>)]) {
+    fn add_rain(&self, outside: Outside, found: &mut [(Condition, Option<Inlet>)]) {
         for (k, rain) in self.rains.iter().enumerate() {
             for &(node, width) in &rain.outcrops {
                 let condition = &mut found[node as usize];
                 if condition.0 == Condition::Air {
-                    let rate = rain.rates[stage] * width;
+                    let rate = on_way(&rain.rates, outside) * width;
                     *condition = (Condition::Rain { rate }, Some(Inlet::Rain(k as u32)));
                 }
             }

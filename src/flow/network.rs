@@ -80,6 +80,8 @@ pub struct FlowNet {
     pub viscosity: f64,
     /// Density of the water at the start (kg/m³).
     pub density: f64,
+    /// Water (m) that the rock beside joints gives as they drain, for each m² of joint.
+    pub storage: f64,
     /// Nodes and pipes, with the order in which systems are solved.
     pub net: Net,
 }
@@ -120,8 +122,8 @@ impl FlowNet {
         let net = Net::new(&heights, &pipes)?;
         let places = nodes.places;
         let (heads, rains, drains, apertures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let (range, viscosity, density) = ([0.0; 2], 1.0, 0.0);
-        Ok(Self { pieces, places, outcrops, heads, rains, drains, apertures, range, viscosity, density, net })
+        let (range, viscosity, density, storage) = ([0.0; 2], 1.0, 0.0, 0.0);
+        Ok(Self { pieces, places, outcrops, heads, rains, drains, apertures, range, viscosity, density, storage, net })
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not

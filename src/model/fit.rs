@@ -15,7 +15,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
     Counters, Course, Drive, Event, EventKind, Events, FlowBalance, FrictionDelay, Inputs, Ledger, Model, MostRest,
-    Seepage, State, WorstSection,
+    Seepage, StageWater, State, WorstSection,
 };
 
 use crate::step::has_bonds;
@@ -317,7 +317,7 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
         (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
     };
-    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    let Seepage { unknowns, conducts, flooded, balances, time } = seepage;
     length("seepage.unknowns", unknowns.len(), net.places.len())?;
     length("seepage.conducts", conducts.len(), net.pieces.len())?;
     length("seepage.flooded", flooded.len(), model.covers.block_count())?;
@@ -325,11 +325,18 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
     }
     in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
-    for (k, FlowBalance { stage: of, sums, residual }) in balances.iter().enumerate() {
+    between("seepage.time", *time, 0.0, f64::MAX)?;
+    for (k, FlowBalance { stage: of, sums, residual, water }) in balances.iter().enumerate() {
         at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
         length("seepage.balances.sums", sums.len(), net.inlet_count())?;
         numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
         number("seepage.balances.residual", *residual, RATE)?;
+        let Some(StageWater { time, sums, stored, drains }) = water else { continue };
+        between("seepage.balances.water.time", *time, 0.0, f64::MAX)?;
+        length("seepage.balances.water.sums", sums.len(), net.inlet_count())?;
+        numbers("seepage.balances.water.sums", sums.as_flattened(), f64::MAX)?;
+        number("seepage.balances.water.stored", *stored, f64::MAX)?;
+        number("seepage.balances.water.drains", *drains, RATE)?;
     }
     Ok(())
 }

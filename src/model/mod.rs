@@ -13,6 +13,7 @@ pub mod overlap;
 mod rest;
 mod restless;
 mod seepage;
+mod seepage_time;
 pub mod settle;
 mod simulation;
 mod stage;
@@ -39,6 +40,6 @@ pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
     BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, FlowBalance, Inputs, Ledger, Port, PortKind,
-    Quantity, Seepage, State,
+    Quantity, Seepage, StageWater, State,
 };
 pub use crate::step::{StepError, StepReport, Wanted};

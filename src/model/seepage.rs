@@ -1,9 +1,9 @@
-//! Steady flow in the joints at the start of a static stage, and what is known of it.
+//! Flow in the joints at the start of a static stage, and what is known of it.
 
 use enmm_seepage::{Condition, Failure, Unsolved};
 use serde::Serialize;
 
-use crate::contact::EdgeId;
+use crate::contact::{EdgeId, JointLaw};
 use crate::cover::BlockId;
 use crate::flow::{Drain, FlowNet, FlowPiece, Inlet, Outcrop, Outside, is_open};
 use crate::geometry::{Point, Vector};
@@ -14,15 +14,21 @@ use super::bonds::{BondState, bond_states};
 use super::case::Invalid;
 
 impl Simulation {
-    /// Finds the steady flow in the joints as they are at the start of a stage, if water flows in them.
+    /// Finds the flow in the joints as they are at the start of a stage, if water flows in them: the steady one, or
+    /// that at the end of the time which the stage gives it. `level_before` (m) is that of the reservoir at the end of
+    /// the stage before.
     ///
     /// # Errors
     /// No flow has been found.
-    pub(super) fn find_flow(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
+    pub(super) fn find_flow(&mut self, stage: usize, start: f64, level_before: f64) -> Result<(), Invalid> {
         let (model, state) = (&self.built.model, &self.state);
         let Some(net) = &model.flow else { return Ok(()) };
-        let seen = Seen { model, state, net, stage, start };
-        self.state.seepage = Some(seen.steady().map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
+        let seen = Seen { model, state, net, stage, start, level_before };
+        let found = match (self.case.stages[stage].flow_time(), &state.seepage) {
+            (Some(time), Some(before)) => seen.over(time, before),
+            _ => seen.steady(),
+        };
+        self.state.seepage = Some(found.map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
         Ok(())
     }
 }
@@ -83,7 +89,9 @@ impl Simulation {
     pub fn flow_survey(&self) -> Option<FlowSurvey> {
         let (model, state) = (&self.built.model, &self.state);
         let net = model.flow.as_ref()?;
-        Some(Seen { model, state, net, stage: state.stage as usize, start: self.time() }.survey())
+        let (stage, start) = (state.stage as usize, self.time());
+        let level_before = state.drive.water_level(state.drive.share(start));
+        Some(Seen { model, state, net, stage, start, level_before }.survey())
     }
 }
 
@@ -100,31 +108,34 @@ fn told(net: &FlowNet, stage: &str, failure: &Failure) -> Invalid {
 }
 
 /// A model at the start of a stage, whose changes have been made.
-struct Seen<'a> {
+pub(super) struct Seen<'a> {
     model: &'a Model,
     state: &'a State,
-    net: &'a FlowNet,
-    stage: usize,
+    pub(super) net: &'a FlowNet,
+    pub(super) stage: usize,
     start: f64,
+    /// Level (m) of the reservoir at the end of the stage before.
+    level_before: f64,
 }
 
 impl Seen<'_> {
     fn steady(&self) -> Result<Seepage, Failure> {
         let conductance = self.conductance();
-        let flooded = self.flooded();
-        let conditions = self.conditions(&flooded, &conductance);
+        let flooded = self.flooded(1.0);
+        let conditions = self.conditions(&flooded, &conductance, 1.0);
         let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
         let flow = self.net.net.steady(&conductance, &at_nodes)?;
         let (stage, sums) = (self.stage as u32, self.net.sums(&conditions, &flow));
         let mut balances = self.state.seepage.as_ref().map_or_else(Vec::new, |seepage| seepage.balances.clone());
-        balances.push(FlowBalance { stage, sums, residual: flow.residual });
+        balances.push(FlowBalance { stage, sums, residual: flow.residual, water: None });
         let conducts = conductance.iter().map(|g| *g > 0.0).collect();
-        Ok(Seepage { unknowns: flow.u, conducts, flooded, balances })
+        let time = self.state.seepage.as_ref().map_or(0.0, |seepage| seepage.time);
+        Ok(Seepage { unknowns: flow.u, conducts, flooded, balances, time })
     }
 
     fn survey(&self) -> FlowSurvey {
         let conductance = self.conductance();
-        let conditions = self.conditions(&self.flooded(), &conductance);
+        let conditions = self.conditions(&self.flooded(1.0), &conductance, 1.0);
         let labels = self.net.net.pieces(&conductance);
         let (mut ends, mut fed) = (vec![0_u32; labels.len()], vec![false; labels.len()]);
         let open = || self.net.pieces.iter().zip(&conductance).filter(|(_, g)| **g > 0.0);
@@ -153,9 +164,8 @@ impl Seen<'_> {
     }
 
     /// Conductance (m²/s per m of head) of each piece; 0 where blocks are gone, bonds hold or the law is closed.
-    fn conductance(&self) -> Vec<f64> {
-        let drive = &self.state.drive;
-        let weight = self.state.water_density * drive.gravity(drive.share(self.start)).norm();
+    pub(super) fn conductance(&self) -> Vec<f64> {
+        let weight = self.unit_weight();
         let bonds = bond_states(self.model, self.state);
         let conducts = |piece: &FlowPiece| {
             let holds = piece.edges.iter().any(|edge| bonds[edge.index()] == BondState::Holds);
@@ -169,11 +179,23 @@ impl Seen<'_> {
         self.net.pieces.iter().map(of_piece).collect()
     }
 
-    /// Condition at each node, and which inlet it is.
-    fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
-        let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
+    /// Unit weight (N/m³) of the water.
+    pub(super) fn unit_weight(&self) -> f64 {
+        let drive = &self.state.drive;
+        self.state.water_density * drive.gravity(drive.share(self.start)).norm()
+    }
+
+    /// Condition at each node, and which inlet it is, at a share of the way from the stage before to this one.
+    pub(super) fn conditions(&self, flooded: &[bool], conductance: &[f64], share: f64) -> Vec<(Condition, Option<Inlet>)> {
+        let dug = self.dug(flooded);
+        let depths: Vec<f64> = self.net.places.iter().map(|&place| self.depth(place, share)).collect();
         let conducts = self.net.conducting(conductance);
-        self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths, conducts: &conducts })
+        self.net.conditions(Outside { stage: self.stage, share, dug: &dug, depths: &depths, conducts: &conducts })
+    }
+
+    /// Law of a piece as it is now.
+    pub(super) fn law_of(&self, piece: &FlowPiece) -> &JointLaw {
+        &self.state.laws[self.state.law_switch[piece.law]]
     }
 
     fn block(&self, edge: EdgeId) -> BlockId {
@@ -185,7 +207,7 @@ impl Seen<'_> {
     }
 
     /// Apertures (m) at both ends of a piece, by what it has opened since the start.
-    fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
+    pub(super) fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
         let (boundary, law) = (&self.model.boundary, self.state.law_switch[piece.law]);
         let stars = &self.model.covers.star_position;
         let moved = |point: EdgeId| boundary.sample(point, &self.state.displacement);
@@ -201,18 +223,27 @@ impl Seen<'_> {
         [0, 1].map(|end| self.net.aperture(law, (moved_at(1, end) - moved_at(0, end)).dot(&outward), closes))
     }
 
-    /// Depth (m) of a position below the surface of the reservoir; negative where there is none.
-    fn depth(&self, at: Point) -> f64 {
+    /// Depth (m) of a position below the surface of the reservoir, at a share of the way from the stage before;
+    /// negative where there is none.
+    fn depth(&self, at: Point, share: f64) -> f64 {
         let drive = &self.state.drive;
         let level = drive.water_level(drive.share(self.start));
-        self.model.water.as_ref().map_or(-1.0, |water| water.surfaces[self.stage].depth(level, at))
+        let Some(water) = &self.model.water else { return -1.0 };
+        let depth = water.surfaces[self.stage].depth(level, at);
+        if share >= 1.0 || self.stage == 0 {
+            return depth;
+        }
+        let before = water.surfaces[self.stage - 1].depth(self.level_before, at);
+        before + (depth - before) * share
     }
 
-    /// Blocks that have been dug out and filled by the reservoir: those with a face in it, and those beside them.
-    fn flooded(&self) -> Vec<bool> {
+    /// Blocks that have been dug out and filled by the reservoir at a share of the way from the stage before: those
+    /// with a face in it, and those beside them.
+    pub(super) fn flooded(&self, share: f64) -> Vec<bool> {
         let (boundary, removed) = (&self.model.boundary, &self.state.removed);
         let mut flooded = vec![false; removed.len()];
-        let deep = |edge: EdgeId| [edge, boundary.after(edge)].iter().any(|&k| self.depth(boundary.reference[k]) > 0.0);
+        let at = |&point: &EdgeId| self.depth(boundary.reference[point], share) > 0.0;
+        let deep = |edge: EdgeId| [edge, boundary.after(edge)].iter().any(at);
         let of_water = self.model.water.iter().flat_map(|water| &water.edges);
         of_water.filter(|&&edge| self.is_gone(edge) && deep(edge)).for_each(|&edge| flooded[self.block(edge)] = true);
         let both_gone = |piece: &&FlowPiece| piece.edges.iter().all(|&edge| self.is_gone(edge));

@@ -66,6 +66,7 @@ impl Simulation {
     pub(super) fn begin_stage(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         self.looks.forget();
         let before = self.energies();
+        let level = self.state.drive.water_level(self.state.drive.share(start));
         self.cut(stage)?;
         self.excavate(stage)?;
         change_laws(&self.case, stage, &mut self.state.laws, &mut self.state.law_switch);
@@ -74,7 +75,7 @@ impl Simulation {
         self.change_water(stage);
         // Dynamic stages hold the pressures of before.
         if stage == 0 || self.case.stages[stage].kind == StageKind::Static {
-            self.find_flow(stage, start)?;
+            self.find_flow(stage, start, level)?;
         }
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);

@@ -124,7 +124,7 @@ impl State {
 }
 
 fn flowing(seepage: &Seepage) -> usize {
-    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    let Seepage { unknowns, conducts, flooded, balances, time: _ } = seepage;
     sum(&[unknowns, conducts, flooded, balances])
 }
 

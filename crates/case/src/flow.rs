@@ -1,7 +1,13 @@
 //! Water of a case that flows in its joints.
 
+use std::fmt;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
 use crate::keys::shared::{HEIGHT, PLACE};
-use crate::keys::unit::{FLOW, METRE, RAIN, VISCOSITY};
+use crate::keys::unit::{FLOW, METRE, NUMBER, RAIN, SECOND, VISCOSITY};
 use crate::keys::{Range, Rule, keys};
 use crate::{CUT_LAW, Case, JointLaw, PointList};
 
@@ -54,6 +60,53 @@ keys! {
         /// Dynamic viscosity (Pa s) of the water: flows go with its inverse, pressures do not depend on it.
         pub viscosity: f64 = 1e-3 =>
             Range::above(0.0).to(1e3).of(VISCOSITY).usual([1e-4, 1e-1], "water has 1e-3 Pa s").label("Viscosity"),
+        /// Water (m³ for each m² of joint, hence m) that the rock beside joints gives as they drain and takes as they
+        /// fill, for stages with a time of flow: its porosity times half the spacing of joints. The joints themselves
+        /// hold their aperture; default: 0.
+        pub storage: f64 = 0.0 =>
+            Range::from(0.0).to(10.0).of(METRE).hint("the porosity of the rock times half the spacing of its joints")
+                .usual([1e-6, 0.3], "rock with a porosity of 0.5 % and joints 1 m apart has 2.5e-3 m").label("Storage")
+                .none_at_zero(),
+    }
+}
+
+keys! {
+    /// Time in which the flow of a static stage goes on from that of the stage before.
+    pub struct FlowTime {
+        /// Time (s) of the flow, whatever the simulated time of the rock: levels, heads and rain go in it from those of
+        /// the stage before to those of this stage, evenly.
+        pub time: f64 =>
+            Range::above(0.0).to(1e12).of(SECOND).hint("an hour has 3600 s, a day 86400 s")
+                .usual([1.0, 1e10], "flow in joints takes minutes to years"),
+        /// Implicit steps in this time.
+        pub steps: u32 => Range::from(1.0).to(1e5).of(NUMBER).hint("24 are usual"),
+    }
+}
+
+/// How water flows in a stage.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+pub enum StageFlow {
+    /// On from the stage before, in a time.
+    Over(FlowTime),
+}
+
+impl<'de> Deserialize<'de> for StageFlow {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl<'de> Visitor<'de> for Reader {
+            type Value = StageFlow;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a time of flow such as { time = 86400.0, steps = 24 }")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<StageFlow, A::Error> {
+                FlowTime::deserialize(MapAccessDeserializer::new(map)).map(StageFlow::Over)
+            }
+        }
+        deserializer.deserialize_any(Reader)
     }
 }
 

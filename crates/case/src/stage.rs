@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::flow::{HEAD, RATE};
+use crate::flow::{FlowTime, HEAD, RATE, StageFlow};
 use crate::joint_law::{COHESION, FRICTION, TENSION};
 use crate::keys::shared::{PLACE, TIME};
 use crate::keys::unit::{NUMBER, SECOND};
@@ -87,6 +87,10 @@ keys! {
         /// Static: drains by name that act from the start of this stage on.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         pub drain: Vec<String>,
+        /// Static: time of the flow in joints, as `{ time = 86400.0, steps = 24 }`, in which it goes on from that of
+        /// the stage before; default: the steady flow. Not in the first stage, before which there is none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub flow: Option<StageFlow>,
     }
 }
 
@@ -98,6 +102,12 @@ impl Stage {
             name.push('\'');
         }
         Self { name, kind, duration, ..Self::default() }
+    }
+
+    /// Time of the flow in joints, if it is not steady.
+    pub fn flow_time(&self) -> Option<&FlowTime> {
+        let Some(StageFlow::Over(time)) = &self.flow else { return None };
+        Some(time)
     }
 
     /// Damping ratio of a dynamic stage: 0.1 when it names none.

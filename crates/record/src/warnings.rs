@@ -55,7 +55,7 @@ impl Recorder {
         self.warn_of_unsettled(simulation)?;
         self.warn_of_shaking(simulation)?;
         self.warn_of_barred(simulation)?;
-        self.warn_of_drains(simulation)?;
+        self.warn_of_water(simulation)?;
         let stage = simulation.stage();
         let name = &stage.name;
         if stage.kind == StageKind::Static && converged && !restless.is_empty() {
@@ -114,11 +114,12 @@ impl Recorder {
         self.warn(simulation, text)
     }
 
-    /// Warns of pumps that run dry and of drains that give water.
-    fn warn_of_drains(&mut self, simulation: &Simulation) -> io::Result<()> {
+    /// Warns of pumps that run dry, of drains that give water and of joints that drain longer than their stage.
+    fn warn_of_water(&mut self, simulation: &Simulation) -> io::Result<()> {
         let name = &simulation.stage().name;
         let texts = simulation.dry_drains().into_iter().map(|doubt| format!("stage {name:?}: {doubt}"));
-        texts.collect::<Vec<_>>().into_iter().try_for_each(|text| self.warn(simulation, text))
+        let drains = simulation.unfinished_drainage().map(|doubt| format!("stage {name:?}: {doubt}"));
+        texts.chain(drains).collect::<Vec<_>>().into_iter().try_for_each(|text| self.warn(simulation, text))
     }
 
     /// Warns of joints that have slipped when the ground has shaken: their slip depends on the mesh.

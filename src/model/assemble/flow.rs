@@ -30,7 +30,7 @@ pub(super) fn net(
         return Err(invalid("flow", "has no effect: no joint parts blocks; add joints or remove [flow]".into()));
     }
     net.range = range;
-    net.viscosity = keys.viscosity;
+    (net.viscosity, net.storage) = (keys.viscosity, keys.storage);
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
     net.heads = heads(case, &net, faces.tolerance)?;
@@ -171,7 +171,8 @@ fn conditions(net: &FlowNet, model: &Model, stage: usize) -> Vec<At> {
     };
     let depths: Vec<f64> = net.places.iter().map(depth).collect();
     let conducts = net.conducting(&at_start(net));
-    net.conditions(Outside { stage, dug: &vec![Outcrop::None; depths.len()], depths: &depths, conducts: &conducts })
+    let dug = vec![Outcrop::None; depths.len()];
+    net.conditions(Outside { stage, share: 1.0, dug: &dug, depths: &depths, conducts: &conducts })
 }
 
 /// A conductance of 1 of each piece that conducts at the start, else 0.

@@ -183,7 +183,28 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
             return fail(&own, message);
         }
     }
+    validate_time(&key.field("flow"), place, stage, case)?;
     refuse_idle_drains(&drain, place, stage, case)
+}
+
+/// Checks the time of the flow of a stage.
+fn validate_time(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
+    let Some(time) = stage.flow_time() else { return Ok(()) };
+    time.check(key)?;
+    if case.flow.is_none() {
+        return fail(key, "has no effect without [flow], which it is for; add `[flow]` or remove it");
+    }
+    if stage.kind == StageKind::Dynamic {
+        let message = "has a time, and is in a dynamic stage, which holds the water pressures of the stage before; \
+                       give it in a static stage";
+        return fail(key, message);
+    }
+    if place == 0 {
+        let message = "has a time, and is in the first stage, before which there is no flow that could go on; let a \
+                       stage without it come first, which finds the steady flow";
+        return fail(key, message);
+    }
+    Ok(())
 }
 
 /// Refuses drains that act already.
