@@ -1,9 +1,14 @@
 //! Water of a case that flows in its joints.
 
+use std::fmt;
+
+use serde::de::{IntoDeserializer, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
 use crate::keys::shared::{HEIGHT, PLACE};
-use crate::keys::unit::{FLOW, METRE, RAIN, VISCOSITY};
-use crate::keys::{Range, Rule, keys};
-use crate::{CUT_LAW, Case, JointLaw, PointList};
+use crate::keys::unit::{FLOW, METRE, NUMBER, RAIN, VISCOSITY};
+use crate::keys::{Range, Rule, keys, words};
+use crate::{CUT_LAW, Case, JointLaw, PointList, Stage, StageKind};
 
 /// Hydraulic apertures of joints.
 const APERTURE: Rule = Range::above(0.0).to(1.0).of(METRE).usual([1e-6, 2e-2], "joints have 1e-5 to 1e-3 m");
@@ -27,6 +32,11 @@ const PUMP: Rule = Range::above(0.0)
     .of(FLOW)
     .usual([1e-9, 1e-2], "1 litre per minute from each metre of depth is 1.7e-5 m²/s")
     .hint("leave it out for water that flows out freely");
+
+/// Internal steps between two flows of a dynamic stage.
+pub(crate) const EVERY: Rule = Range::from(1.0).to(1e6).of(NUMBER).hint("1 finds the flow in every internal step");
+/// The same where a case names none.
+const EVERY_DEFAULT: u32 = 10;
 
 /// Least and greatest aperture over those of the laws, where a case names none.
 const NARROWEST: f64 = 0.1;
@@ -100,6 +110,53 @@ keys! {
         /// crosses, and less where a joint runs dry; default: none, so that the water flows out freely.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub pump: Option<f64> => PUMP.label("Pump"),
+    }
+}
+
+words! {
+    /// Water in joints while a dynamic stage goes on.
+    #[derive(Default)]
+    pub enum FlowInMotion {
+        /// The pressures of before stay as they are.
+        #[default]
+        Hold = "hold",
+        /// The steady flow is found again and again, through the apertures of before.
+        Steady = "steady",
+    }
+}
+
+/// Water in joints while a stage goes on, in one of the forms of its key.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+pub enum StageFlow {
+    /// In a dynamic stage.
+    InMotion(FlowInMotion),
+}
+
+impl<'de> Deserialize<'de> for StageFlow {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl Visitor<'_> for Reader {
+            type Value = StageFlow;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("\"hold\" or \"steady\"")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<StageFlow, E> {
+                FlowInMotion::deserialize(word.into_deserializer()).map(StageFlow::InMotion)
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl Stage {
+    /// Internal steps after which a dynamic stage finds the steady flow again; none in stages that hold it.
+    pub fn flow_steps(&self) -> Option<u64> {
+        let is_steady = self.flow == Some(StageFlow::InMotion(FlowInMotion::Steady));
+        (is_steady && self.kind == StageKind::Dynamic).then(|| self.flow_every.unwrap_or(EVERY_DEFAULT).into())
     }
 }
 
