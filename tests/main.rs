@@ -26,6 +26,7 @@ mod drains;
 mod ends_and_meshes;
 mod fast_failures;
 mod flow;
+mod flow_hosts;
 mod found_contacts;
 mod fracture;
 mod fractured_slope;

@@ -15,7 +15,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
     Counters, Course, Drive, Event, EventKind, Events, FlowBalance, FrictionDelay, Inputs, Ledger, Model, MostRest,
-    Seepage, State, WorstSection,
+    Seepage, State, Surroundings, WorstSection,
 };
 
 use crate::step::has_bonds;
@@ -23,7 +23,7 @@ use crate::step::has_bonds;
 use super::Simulation;
 use super::assemble::Built;
 use super::case::StageKind;
-use super::case::limits::FACTOR_MAX;
+use super::case::limits::{FACTOR_MAX, RAIN_MAX};
 
 /// Value of a state that the model cannot have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -317,7 +317,20 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
         (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
     };
-    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed } = seepage;
+    let Surroundings { level, weight, heads, rains, drains } = surroundings;
+    check_sources(model, "seepage.surroundings", (heads, rains, drains))?;
+    number("seepage.surroundings.level", *level, LENGTH)?;
+    between("seepage.surroundings.weight", *weight, 0.0, FORCE)?;
+    passed.iter().try_for_each(|volume| between("seepage.passed", *volume, 0.0, FORCE))?;
+    length("seepage.apertures", apertures.len(), net.pieces.len())?;
+    let within = |aperture: f64| aperture == 0.0 || (net.range[0]..=net.range[1]).contains(&aperture);
+    for (k, own) in apertures.iter().enumerate() {
+        if !own.iter().all(|aperture| within(*aperture)) || (own[0] > 0.0) != (own[1] > 0.0) {
+            let limit = format!("two of 0 or two within {:?} m", net.range);
+            return unfit(format!("seepage.apertures[{k}]"), format!("{own:?}"), limit);
+        }
+    }
     length("seepage.unknowns", unknowns.len(), net.places.len())?;
     length("seepage.conducts", conducts.len(), net.pieces.len())?;
     length("seepage.flooded", flooded.len(), model.covers.block_count())?;
@@ -325,11 +338,12 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
     }
     in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
-    for (k, FlowBalance { stage: of, sums, residual }) in balances.iter().enumerate() {
+    for (k, FlowBalance { stage: of, sums, residual, seeps }) in balances.iter().enumerate() {
         at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
         length("seepage.balances.sums", sums.len(), net.inlet_count())?;
         numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
         number("seepage.balances.residual", *residual, RATE)?;
+        seeps.map_or(Ok(()), |height| number("seepage.balances.seeps", height, LENGTH))?;
     }
     Ok(())
 }
@@ -440,7 +454,11 @@ fn check_inputs(model: &Model, of: &str, inputs: &Inputs) -> Fit {
         port_traction,
         port_pressure,
         port_velocity,
+        head,
+        rain,
+        drain,
     } = inputs;
+    check_sources(model, of, (head, rain, drain))?;
     length(format_args!("{of}.port_velocity"), port_velocity.len(), ports)?;
     vectors(&format!("{of}.port_velocity"), port_velocity, RATE)?;
     vector(format_args!("{of}.gravity"), *gravity, RATE)?;
@@ -456,6 +474,16 @@ fn check_inputs(model: &Model, of: &str, inputs: &Inputs) -> Fit {
         numbers(&format!("{of}.{field}"), list, FORCE)?;
     }
     Ok(())
+}
+
+/// Checks levels of heads, rates of rain, and how many drains there are.
+fn check_sources(model: &Model, of: &str, (heads, rains, drains): (&[f64], &[f64], &[bool])) -> Fit {
+    let own = model.flow.as_ref().map_or([0; 3], |net| [net.heads.len(), net.rains.len(), net.drains.len()]);
+    length(format_args!("{of}.head"), heads.len(), own[0])?;
+    length(format_args!("{of}.rain"), rains.len(), own[1])?;
+    length(format_args!("{of}.drain"), drains.len(), own[2])?;
+    numbers(&format!("{of}.head"), heads, LENGTH)?;
+    rains.iter().try_for_each(|rate| between(format_args!("{of}.rain"), *rate, 0.0, RAIN_MAX))
 }
 
 fn check_events(model: &Model, events: &Events) -> Fit {

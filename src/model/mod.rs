@@ -6,6 +6,7 @@ mod breaking;
 mod failure;
 pub mod fit;
 mod grounds;
+mod inlets;
 mod looks;
 pub mod mechanism;
 mod observe;
@@ -26,6 +27,7 @@ pub use enmm_case::Case;
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
+pub use inlets::{INLET_QUANTITIES, InletState, JointFlow, JointWater};
 pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{
     BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,

@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use crate::keys::shared::{HEIGHT, PLACE};
 use crate::keys::unit::{FLOW, METRE, NUMBER, RAIN, VISCOSITY};
 use crate::keys::{Range, Rule, keys, words};
+use crate::limits::RAIN_MAX;
 use crate::{CUT_LAW, Case, JointLaw, PointList, Stage, StageKind};
 
 /// Hydraulic apertures of joints.
@@ -21,7 +22,7 @@ pub(crate) const HEAD: Rule = HEIGHT.hint("the height y to which the water would
 
 /// Rain: the greatest that was ever measured, over a minute, is 31 mm.
 pub(crate) const RATE: Rule = Range::from(0.0)
-    .to(1e-3)
+    .to(RAIN_MAX)
     .of(RAIN)
     .usual([1e-10, 1e-4], "10 mm in an hour are 2.8e-6 m/s, 1000 mm in a year 3.2e-8 m/s")
     .hint("10 mm in an hour are 2.8e-6 m/s, and 0 is none");

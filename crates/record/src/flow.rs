@@ -49,7 +49,7 @@ impl FlowRecord {
             return Vec::new();
         };
         let of_stage = |balance: &FlowBalance| {
-            let FlowBalance { stage, sums, residual } = balance.clone();
+            let FlowBalance { stage, sums, residual, .. } = balance.clone();
             let stage = simulation.case().stages[stage as usize].name.clone();
             let places = net.inlet_names().zip(sums).map(move |(name, [enters, leaves, runs_off])| {
                 let (stage, name) = (stage.clone(), name.to_owned());
