@@ -27,6 +27,8 @@ mod ends_and_meshes;
 mod fast_failures;
 mod flow;
 mod flow_in_time;
+mod flow_openings;
+mod flow_hosts;
 mod found_contacts;
 mod fracture;
 mod fractured_slope;

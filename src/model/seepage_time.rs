@@ -2,6 +2,7 @@
 
 use enmm_seepage::{Failure, Storage, law};
 
+use crate::flow::FlowPiece;
 use crate::state::{FlowBalance, Seepage, StageWater};
 
 use super::Simulation;
@@ -37,54 +38,64 @@ impl Simulation {
     }
 }
 
-impl Seen<'_> {
+impl<'a> Seen<'a> {
     /// Flow that goes on from one of before, in implicit steps, while levels, heads and rain go evenly to those of the
     /// stage. Apertures stay as they are at its start.
-    pub(super) fn over(&self, of_stage: &FlowTime, before: &Seepage) -> Result<Seepage, Failure> {
+    pub(super) fn over(&self, of_stage: &FlowTime, before: &'a Seepage) -> Result<Seepage, Failure> {
         let net = &self.net.net;
-        let conductance = self.conductance();
-        let (volume, compliance) = self.room(&conductance);
+        let apertures = self.opened();
+        let conductance = self.conductance(&apertures);
+        let (volume, compliance) = self.room(&apertures);
         let storage = Storage { volume: &volume, compliance: &compliance };
         let held = |u: &[f64]| net.stored(storage, u).map(|waters| waters.iter().fold(0.0, |sum, water| sum + water));
         let step = of_stage.time / f64::from(of_stage.steps);
-        let (mut unknowns, mut flooded) = (before.unknowns.clone(), Vec::new());
-        let (mut last, mut totals) = (Vec::new(), vec![[0.0; 3]; self.net.inlet_count()]);
-        let (start, mut holds, mut drains, mut residual) = (held(&unknowns)?, held(&unknowns)?, 0.0, 0.0_f64);
+        let start = held(&before.unknowns)?;
+        let (mut unknowns, mut flooded, mut holds) = (before.unknowns.clone(), Vec::new(), start);
+        let mut own =
+            FlowBalance { stage: self.stage as u32, sums: Vec::new(), residual: 0.0, seeps: None, water: None, rounds: None };
+        let mut water =
+            StageWater { time: of_stage.time, sums: vec![[0.0; 3]; self.net.inlet_count()], stored: 0.0, drains: 0.0 };
         for k in 1..=of_stage.steps {
-            let share = f64::from(k) / f64::from(of_stage.steps);
-            flooded = self.flooded(share);
-            let conditions = self.conditions(&flooded, &conductance, share);
+            let here = Self { way: Some((before, f64::from(k) / f64::from(of_stage.steps))), ..*self };
+            flooded = here.flooded();
+            let conditions = here.conditions(&flooded, &conductance);
             let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
             let flow = net.advance(&conductance, &at_nodes, storage, &unknowns, step)?;
-            last = self.net.sums(&conditions, &flow);
-            for (total, sum) in totals.as_flattened_mut().iter_mut().zip(last.as_flattened()) {
-                *total += sum * step;
-            }
+            (own.sums, own.seeps) = (self.net.sums(&conditions, &flow), self.net.seeps(&conditions, &flow));
+            own.residual = own.residual.max(flow.residual);
+            let sums = water.sums.as_flattened_mut().iter_mut().zip(own.sums.as_flattened());
+            sums.for_each(|(total, rate)| *total += rate * step);
             let now = held(&flow.u)?;
-            (drains, holds) = ((holds - now) / step, now);
-            residual = residual.max(flow.residual);
-            unknowns = flow.u;
+            (water.drains, holds, unknowns) = ((holds - now) / step, now, flow.u);
         }
-        let water = StageWater { time: of_stage.time, sums: totals, stored: holds - start, drains };
-        let mut balances = before.balances.clone();
-        balances.push(FlowBalance { stage: self.stage as u32, sums: last, residual, water: Some(water) });
-        let conducts = conductance.iter().map(|g| *g > 0.0).collect();
-        Ok(Seepage { unknowns, conducts, flooded, balances, time: before.time + of_stage.time })
+        water.stored = holds - start;
+        own.water = Some(water);
+        Ok(Seepage {
+            unknowns,
+            conducts: conductance.iter().map(|g| *g > 0.0).collect(),
+            apertures,
+            flooded,
+            surroundings: self.surroundings(),
+            balances: before.balances.iter().cloned().chain([own]).collect(),
+            passed: before.passed,
+            time: before.time + of_stage.time,
+            rounds: Vec::new(),
+        })
     }
 
-    /// Volume (m²) and compliance (m² per m of head) of each piece that conducts, with the rock beside it.
-    fn room(&self, conductance: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let weight = self.unit_weight();
-        let of_piece = |(piece, conducts): (&crate::flow::FlowPiece, &f64)| {
-            if *conducts <= 0.0 {
+    /// Volume (m²) and compliance (m² per m of head) of each piece with apertures (m) at its nodes, with the rock beside
+    /// it.
+    fn room(&self, apertures: &[[f64; 2]]) -> (Vec<f64>, Vec<f64>) {
+        let weight = self.weight();
+        let of_piece = |(piece, &[e0, e1]): (&FlowPiece, &[f64; 2])| {
+            if e0 <= 0.0 {
                 return (0.0, 0.0);
             }
-            let [e0, e1] = self.apertures(piece);
-            let law = self.law_of(piece);
+            let law = &self.state.laws[self.state.law_switch[piece.law]];
             let parts = if law.penalty[0] { 0.0 } else { 1.0 / law.normal_stiffness };
             let volume = law::volume(e0, e1, piece.length, self.net.storage);
             (volume, piece.length * weight * (parts + 0.5 * (e0 + e1) / BULK))
         };
-        self.net.pieces.iter().zip(conductance).map(of_piece).unzip()
+        self.net.pieces.iter().zip(apertures).map(of_piece).unzip()
     }
 }

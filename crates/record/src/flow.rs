@@ -75,7 +75,7 @@ impl FlowRecord {
             return Vec::new();
         };
         let of_stage = |balance: &FlowBalance| {
-            let FlowBalance { stage, sums, residual, water } = balance;
+            let FlowBalance { stage, sums, residual, water, .. } = balance;
             let stage = &simulation.case().stages[*stage as usize].name;
             let places = net.inlet_names().zip(sums).enumerate();
             let of_place = |(k, (name, &[enters, leaves, runs_off])): (usize, (&str, &[f64; 3]))| {
