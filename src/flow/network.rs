@@ -80,6 +80,10 @@ pub struct FlowNet {
     pub viscosity: f64,
     /// Density of the water at the start (kg/m³).
     pub density: f64,
+    /// Whether apertures follow openings in the course of static stages.
+    pub coupled: bool,
+    /// Water (m) that the rock beside joints gives as they drain, for each m² of joint.
+    pub storage: f64,
     /// Nodes and pipes, with the order in which systems are solved.
     pub net: Net,
 }
@@ -119,9 +123,21 @@ impl FlowNet {
         let pipes: Vec<[u32; 2]> = pieces.iter().map(|piece| piece.nodes).collect();
         let net = Net::new(&heights, &pipes)?;
         let places = nodes.places;
-        let (heads, rains, drains, apertures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let (range, viscosity, density) = ([0.0; 2], 1.0, 0.0);
-        Ok(Self { pieces, places, outcrops, heads, rains, drains, apertures, range, viscosity, density, net })
+        Ok(Self {
+            pieces,
+            places,
+            outcrops,
+            heads: Vec::new(),
+            rains: Vec::new(),
+            drains: Vec::new(),
+            apertures: Vec::new(),
+            range: [0.0; 2],
+            viscosity: 1.0,
+            density: 0.0,
+            coupled: false,
+            storage: 0.0,
+            net,
+        })
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not

@@ -1,9 +1,8 @@
 //! What is seen of water that flows in joints: flow in each piece, and where water enters and leaves.
 
-use enmm_seepage::law;
+use enmm_seepage::{Condition, law};
 
 use crate::flow::{FlowPiece, Inlet, Wet, wet};
-use crate::geometry::Vector;
 
 use super::Simulation;
 use super::seepage::Seen;
@@ -30,6 +29,8 @@ pub struct FlowingInlet {
     pub node: u32,
     /// Which of the inlets.
     pub inlet: Inlet,
+    /// Whether it is open to the air, and not below water or a head.
+    pub is_open: bool,
     /// Water (m²/s) that enters the joints there; negative where it leaves them.
     pub inflow: f64,
 }
@@ -41,22 +42,21 @@ pub struct Flowing {
     pub pieces: Vec<FlowingPiece>,
     /// Nodes at which water can enter or leave.
     pub inlets: Vec<FlowingInlet>,
+    /// Whether each drain acts.
+    pub drains: Vec<bool>,
 }
 
 impl Simulation {
-    /// The flow in the joints, if water flows in them; `began` are the displacements of the covers (m) at the start of
-    /// the stage, when it was found.
-    pub fn flowing(&self, began: &[Vector]) -> Option<Flowing> {
+    /// The flow in the joints as it was found last, if water flows in them.
+    pub fn flowing(&self) -> Option<Flowing> {
         let (model, state) = (&self.built.model, &self.state);
         let (net, seepage) = (model.flow.as_ref()?, state.seepage.as_ref()?);
-        let moved = if began.len() == state.displacement.len() { began } else { &state.displacement };
-        let seen = Seen { model, state, net, stage: state.stage as usize, start: state.stage_start, moved };
-        let weight = seen.weight();
+        let weight = seepage.surroundings.weight;
         let mut conductance = vec![0.0; net.pieces.len()];
         let mut inflow = vec![0.0; net.places.len()];
         let mut pieces = Vec::new();
         for (k, piece) in net.pieces.iter().enumerate().filter(|(k, _)| seepage.conducts[*k]) {
-            let apertures = seen.apertures(piece);
+            let apertures = seepage.apertures[k];
             conductance[k] = net.conductance(piece, apertures, weight);
             let ends = piece.nodes.map(|node| (net.places[node as usize].y, seepage.unknowns[node as usize]));
             let (flow, filling) = flow_in(conductance[k], ends);
@@ -65,28 +65,30 @@ impl Simulation {
             pieces.push(FlowingPiece { piece: *piece, apertures, unknowns: ends.map(|end| end.1), filling, flow });
         }
         let conducts = net.conducting(&conductance);
+        let seen = Seen { model, state, net, stage: state.stage as usize, start: self.time(), way: None };
         let conditions = seen.conditions(&seepage.flooded, &conductance);
-        let at = |(node, (_, inlet)): (usize, &(_, Option<Inlet>))| {
+        let at = |(node, (condition, inlet)): (usize, &(Condition, Option<Inlet>))| {
             let inlet = inlet.filter(|_| conducts[node])?;
-            Some(FlowingInlet { node: node as u32, inlet, inflow: inflow[node] })
+            let is_open = matches!(condition, Condition::Air | Condition::Rain { .. });
+            Some(FlowingInlet { node: node as u32, inlet, is_open, inflow: inflow[node] })
         };
-        Some(Flowing { pieces, inlets: conditions.iter().enumerate().filter_map(at).collect() })
+        let inlets = conditions.iter().enumerate().filter_map(at).collect();
+        Some(Flowing { pieces, inlets, drains: seepage.surroundings.drains.clone() })
     }
 }
 
 impl Simulation {
     /// Sum over all joints (N/m) of the pressure of the water that flows in them; none where none flows.
-    pub fn joint_water(&self) -> Option<f64> {
+    pub fn pressure_in_joints(&self) -> Option<f64> {
         let (model, state) = (&self.built.model, &self.state);
         let (net, seepage) = (model.flow.as_ref()?, state.seepage.as_ref()?);
-        let gravity = state.drive.gravity(state.drive.share(state.stage_start)).norm();
         let pressed = |piece: &FlowPiece| {
             let unknowns = piece.nodes.map(|node| seepage.unknowns[node as usize]);
             let part = wet(unknowns, piece.nodes.map(|node| net.places[node as usize].y));
             part.map_or(0.0, |Wet { span, heads }| (span[1] - span[0]) * piece.length * 0.5 * (heads[0] + heads[1]))
         };
         let open = net.pieces.iter().zip(&seepage.conducts).filter(|(_, conducts)| **conducts);
-        Some(open.map(|(piece, _)| pressed(piece)).fold(0.0, |sum, part| sum + part) * state.water_density * gravity)
+        Some(open.map(|(piece, _)| pressed(piece)).fold(0.0, |sum, part| sum + part) * seepage.surroundings.weight)
     }
 }
 

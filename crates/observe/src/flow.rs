@@ -1,6 +1,6 @@
 //! Water that flows in joints at one instant.
 
-use enmm::geometry::{Point, Vector};
+use enmm::geometry::Point;
 use enmm::model::tables::{FlowNet, Inlet, wet};
 use enmm::model::{Flowing, FlowingInlet, FlowingPiece, Quantity, Simulation};
 
@@ -85,7 +85,7 @@ pub struct DrainFlow {
 
 /// Water in the joints of a model.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct JointFlow {
+pub struct WaterInJoints {
     /// Joints that conduct.
     pub lines: Vec<FlowLine>,
     /// Outcrops that seep.
@@ -97,33 +97,23 @@ pub struct JointFlow {
 /// Share of the greatest flow below which an outcrop does not seep: the rest is the round-off of flows.
 const SEEPS: f64 = 1e-9;
 
-impl JointFlow {
-    /// The flow now, as the last static stage found it; none where water does not flow in joints. `began` are the
-    /// displacements of the covers (m) at the start of the stage.
-    pub fn of(simulation: &Simulation, began: &[Vector]) -> Option<Self> {
+impl WaterInJoints {
+    /// The flow now, as it was found last; none where water does not flow in joints.
+    pub fn of(simulation: &Simulation) -> Option<Self> {
         let net = simulation.model().flow.as_ref()?;
-        let Flowing { pieces, inlets } = simulation.flowing(began)?;
+        let Flowing { pieces, inlets, drains: acting } = simulation.flowing()?;
         let positions = simulation.positions();
         let weight = water_weight(simulation);
         let lines: Vec<FlowLine> =
             pieces.iter().map(|piece| line(simulation, net, piece, &positions, weight)).collect();
         let most = lines.iter().map(|line| line.flow.abs()).fold(0.0, f64::max);
-        let leaves = |inlet: &&FlowingInlet| {
-            !matches!(inlet.inlet, Inlet::Drain(_) | Inlet::Reservoir) && -inlet.inflow > SEEPS * most
-        };
-        let to_air = |inlet: &&FlowingInlet| {
-            let place = net.places[inlet.node as usize];
-            !matches!(inlet.inlet, Inlet::Head(head) if held_above(simulation, net, head, place))
+        let seeps = |inlet: &&FlowingInlet| {
+            inlet.is_open && !matches!(inlet.inlet, Inlet::Drain(_)) && -inlet.inflow > SEEPS * most
         };
         let seep = |inlet: &FlowingInlet| Seep { place: net.places[inlet.node as usize], flow: -inlet.inflow };
-        let seeps = inlets.iter().filter(leaves).filter(to_air).map(seep).collect();
-        Some(Self { lines, seeps, drains: drains(simulation, net, &inlets) })
+        let seeps = inlets.iter().filter(seeps).map(seep).collect();
+        Some(Self { lines, seeps, drains: drains(simulation, &acting, &inlets) })
     }
-}
-
-/// Whether a head is held above a place in the stage in progress.
-fn held_above(simulation: &Simulation, net: &FlowNet, head: u32, place: Point) -> bool {
-    net.heads[head as usize].levels[simulation.state().stage as usize] > place.y
 }
 
 fn line(simulation: &Simulation, net: &FlowNet, piece: &FlowingPiece, positions: &[Point], weight: f64) -> FlowLine {
@@ -151,13 +141,12 @@ fn line(simulation: &Simulation, net: &FlowNet, piece: &FlowingPiece, positions:
 }
 
 /// Drains that act, with the water that they take.
-fn drains(simulation: &Simulation, net: &FlowNet, inlets: &[FlowingInlet]) -> Vec<DrainFlow> {
-    let stage = simulation.state().stage as usize;
+fn drains(simulation: &Simulation, acting: &[bool], inlets: &[FlowingInlet]) -> Vec<DrainFlow> {
     let taken = |k: usize| {
         let own = inlets.iter().filter(|inlet| inlet.inlet == Inlet::Drain(k as u32));
         own.map(|inlet| -inlet.inflow).fold(0.0, |sum, flow| sum + flow)
     };
-    let acting = (0..net.drains.len()).filter(|&k| net.drains[k].active[stage]);
+    let acting = (0..acting.len()).filter(|&k| acting[k]);
     let drain = |k: usize| {
         let of_case = &simulation.case().drains[k];
         let points = of_case.points.iter().map(|point| Point::from(*point)).collect();

@@ -3,7 +3,7 @@
 use enmm::geometry::{Point, Vector};
 use enmm::model::Simulation;
 
-use crate::flow::{FlowLine, JointFlow};
+use crate::flow::{FlowLine, WaterInJoints};
 use crate::water::wet_edges;
 
 /// Reynolds number ρq/μ from which the cubic law gives too much flow: joints are rough, and flow in them becomes
@@ -55,15 +55,14 @@ pub fn lifted_blocks(simulation: &Simulation) -> Vec<LiftedBlock> {
     lifted
 }
 
-/// What a user should know of the flow in joints that was found at the start of the stage; `began` are the
-/// displacements of the covers (m) then.
-pub fn flow_doubts(simulation: &Simulation, began: &[Vector]) -> Vec<String> {
-    let Some(flow) = JointFlow::of(simulation, began) else { return Vec::new() };
+/// What a user should know of the flow in joints that was found last.
+pub fn flow_doubts(simulation: &Simulation) -> Vec<String> {
+    let Some(flow) = WaterInJoints::of(simulation) else { return Vec::new() };
     fast(simulation, &flow).into_iter().chain(lifted(simulation)).collect()
 }
 
 /// Flow that is too fast for the cubic law.
-fn fast(simulation: &Simulation, flow: &JointFlow) -> Option<String> {
+fn fast(simulation: &Simulation, flow: &WaterInJoints) -> Option<String> {
     let viscosity = simulation.model().flow.as_ref()?.viscosity;
     let reynolds = |line: &FlowLine| simulation.state().water_density * line.flow.abs() / viscosity;
     let count = flow.lines.iter().filter(|line| reynolds(line) > TURBULENT).count();

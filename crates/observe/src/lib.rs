@@ -45,7 +45,7 @@ pub use enmm::model::{
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
 pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
-pub use flow::{DrainFlow, FLOW_QUANTITIES, FlowLine, JointFlow, Seep};
+pub use flow::{DrainFlow, FLOW_QUANTITIES, FlowLine, Seep, WaterInJoints};
 pub use flow_doubts::{LiftedBlock, flow_doubts, lifted_blocks};
 pub use joints::{JOINT_QUANTITIES, JointPiece, Joints, SlipSince};
 pub use loops::{loops, node_loops};

@@ -12,7 +12,7 @@ use super::signs::{draw_seep, push_arrow};
 use super::slope::Labels;
 use super::stage::{StageEnd, StageSheet, quantile};
 use enmm::geometry::Point;
-use enmm_observe::{FlowLine, JointFlow};
+use enmm_observe::{FlowLine, WaterInJoints};
 
 /// Width (px) of joints in which little flows, and of those of the greatest flow.
 const WIDTHS: [f64; 4] = [1.8, 3.0, 4.4, 6.0];
@@ -39,7 +39,7 @@ fn litres(flow: f64) -> String {
 }
 
 /// Draws the water that flows in joints at the end of a stage.
-pub fn flow_picture(stage: &StageEnd, flow: &JointFlow) -> Picture {
+pub fn flow_picture(stage: &StageEnd, flow: &WaterInJoints) -> Picture {
     let mut sheet = StageSheet::new(stage, BAR_ROOM, "pressure head of the water in joints, and its flow");
     sheet.draw_rock();
     let view = sheet.view;
@@ -140,7 +140,7 @@ fn draw_arrows(sheet: &mut Sheet, view: &View, lines: &[&FlowLine]) {
     sheet.path(path, Style::line(INK, 2.0));
 }
 
-fn draw_drains(sheet: &mut Sheet, view: &View, flow: &JointFlow) {
+fn draw_drains(sheet: &mut Sheet, view: &View, flow: &WaterInJoints) {
     for drain in flow.drains.iter().filter(|drain| drain.points.iter().all(is_drawable)) {
         let line = || Path::open(drain.points.iter().map(|point| view.pixel(point)));
         sheet.path(line(), Style::line(WHITE, 6.0));
@@ -152,7 +152,7 @@ fn draw_drains(sheet: &mut Sheet, view: &View, flow: &JointFlow) {
 }
 
 /// Name and flow beside the mouth of each drain.
-fn label_drains(sheet: &mut Sheet, view: &View, flow: &JointFlow) {
+fn label_drains(sheet: &mut Sheet, view: &View, flow: &WaterInJoints) {
     let mut labels = Labels::new(view.area);
     for drain in flow.drains.iter().filter(|drain| drain.points.iter().all(is_drawable)) {
         let Some(mouth) = drain.points.first().map(|point: &Point| view.pixel(point)) else { continue };
@@ -167,7 +167,7 @@ fn label_drains(sheet: &mut Sheet, view: &View, flow: &JointFlow) {
     }
 }
 
-fn legends(flow: &JointFlow, greatest: f64) -> Vec<Legend> {
+fn legends(flow: &WaterInJoints, greatest: f64) -> Vec<Legend> {
     let length = |dry: bool| {
         let these = flow.lines.iter().filter(|line| line.is_dry() == dry);
         these.map(|line| (line.ends[1] - line.ends[0]).norm()).fold(0.0, |sum, length| sum + length)
@@ -197,10 +197,10 @@ fn legends(flow: &JointFlow, greatest: f64) -> Vec<Legend> {
     legends.filter(|legend| !legend.entries.is_empty()).collect()
 }
 
-fn lines_have_arrows(flow: &JointFlow) -> bool {
+fn lines_have_arrows(flow: &WaterInJoints) -> bool {
     flow.lines.iter().any(|line| line.flow != 0.0)
 }
 
-fn seepage(flow: &JointFlow) -> f64 {
+fn seepage(flow: &WaterInJoints) -> f64 {
     flow.seeps.iter().fold(0.0, |sum, seep| sum + seep.flow)
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::sample::{PROFILE, Sample, sample};
 use enmm::geometry::{Point, Vector};
 use enmm::model::ContactState;
-use enmm_observe::{BondState, Boundary, DrainFlow, FlowLine, JointFlow, Polygons, Seep, Snapshot};
+use enmm_observe::{BondState, Boundary, DrainFlow, FlowLine, Polygons, Seep, Snapshot, WaterInJoints};
 use enmm_picture::{
     ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_contours,
     displacement_picture, flow_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours,
@@ -286,7 +286,7 @@ fn water_in_joints_shows_heads_flows_tables_outcrops_and_drains() {
         let heads = [from[1] + a, to[1] + b];
         FlowLine { ends: reference, reference, heads, wet, flow, ..FlowLine::default() }
     };
-    let flow = JointFlow {
+    let flow = WaterInJoints {
         lines: vec![
             line([[40.0, 5.0], [90.0, 5.0]], [20.0, 20.0], [0.0, 1.0], -1e-5),
             line([[60.0, 10.0], [60.0, 30.0]], [5.0, 0.0], [0.0, 0.25], 1.5e-8),
@@ -316,7 +316,7 @@ fn water_in_joints_shows_heads_flows_tables_outcrops_and_drains() {
     let deep = deep.expect("the full joint").middle();
     assert_eq!(colour_at(&pixels(&picture), [deep[0] + 100.0, deep[1]]), "#fde953");
     assert!(drawn.iter().any(|shape| shape.is("stroke-width", "1.8")), "little flow is thin");
-    let dry = JointFlow { lines: flow.lines[2..].to_vec(), ..JointFlow::default() };
+    let dry = WaterInJoints { lines: flow.lines[2..].to_vec(), ..WaterInJoints::default() };
     let dry = flow_picture(&stage, &dry);
     assert!(!dry.svg().contains("NaN") && !dry.svg().contains("inf") && !dry.svg().contains("water table"));
 }

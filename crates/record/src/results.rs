@@ -9,7 +9,7 @@ use enmm::model::case::{PictureKind, StageKind};
 use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, copy_file};
 use enmm_observe::{
-    JointFlow, Joints, Polygons, Snapshot, broken_sections, moved_since, references, rock_sections, water_surface,
+    Joints, Polygons, Snapshot, WaterInJoints, broken_sections, moved_since, references, rock_sections, water_surface,
 };
 use enmm_picture::{
     StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture, history_picture,
@@ -212,7 +212,7 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
                 vec![strength_picture(&stage, &rock_sections(simulation), &broken_sections(simulation))]
             }
             PictureKind::Flow => {
-                let flow = JointFlow::of(simulation, started);
+                let flow = WaterInJoints::of(simulation);
                 flow.map(|flow| flow_picture(&stage, &flow)).into_iter().collect()
             }
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],

@@ -144,7 +144,7 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         conductivities: conductivities(simulation),
         drain_times: drain_times(simulation),
         notes: built.notes.iter().cloned().chain(corner_note(simulation)).collect(),
-        warnings: warnings.iter().chain(&built.warnings).cloned().chain(flow_doubts(simulation, &[])).collect(),
+        warnings: warnings.iter().chain(&built.warnings).cloned().chain(flow_doubts(simulation)).collect(),
     }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn net(
         return Err(invalid("flow", "has no effect: no joint parts blocks; add joints or remove [flow]".into()));
     }
     net.range = range;
-    net.viscosity = keys.viscosity;
+    (net.viscosity, net.storage, net.coupled) = (keys.viscosity, keys.storage, keys.coupled);
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
     net.heads = heads(case, &net, faces.tolerance)?;
@@ -188,7 +188,18 @@ fn conditions(net: &FlowNet, model: &Model, stage: usize) -> Vec<At> {
     };
     let depths: Vec<f64> = net.places.iter().map(depth).collect();
     let conducts = net.conducting(&at_start(net));
-    net.conditions(Outside { stage, dug: &vec![Outcrop::None; depths.len()], depths: &depths, conducts: &conducts })
+    let heads: Vec<f64> = net.heads.iter().map(|head| head.levels[stage]).collect();
+    let rains: Vec<f64> = net.rains.iter().map(|rain| rain.rates[stage]).collect();
+    let drains: Vec<bool> = net.drains.iter().map(|drain| drain.active[stage]).collect();
+    let dug = vec![Outcrop::None; depths.len()];
+    net.conditions(Outside {
+        heads: &heads,
+        rains: &rains,
+        drains: &drains,
+        dug: &dug,
+        depths: &depths,
+        conducts: &conducts,
+    })
 }
 
 /// A conductance of 1 of each piece that conducts at the start, else 0.

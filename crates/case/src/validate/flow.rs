@@ -4,7 +4,7 @@ use super::checks::{Names, each, points, segment, unique};
 use super::ports::word;
 use crate::key::{Check, Key, fail};
 use crate::keys::Plain;
-use crate::{Case, Drain, Flow, Head, Integrator, Rain, Stage, StageKind};
+use crate::{Case, Drain, Flow, Head, Integrator, Rain, Stage, StageFlow, StageKind};
 
 /// Names of places in results that are no heads.
 pub const PLACES: [&str; 2] = ["reservoir", "air"];
@@ -177,13 +177,48 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
                            stage";
             return fail(&own, message);
         }
-        if stage.kind == StageKind::Dynamic {
+        if stage.kind == StageKind::Dynamic && stage.flow_steps().is_none() {
             let message = "is in a dynamic stage, which holds the water pressures of the stage before; give it in a \
-                           static stage";
+                           static stage, or add `flow = \"steady\"`";
             return fail(&own, message);
         }
     }
+    validate_course(key, place, stage, case)?;
     refuse_idle_drains(&drain, place, stage, case)
+}
+
+/// Checks how water in joints goes on in a stage.
+fn validate_course(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
+    if let Some(every) = stage.flow_every.filter(|_| stage.flow_steps().is_none()) {
+        let message = format!("is {every}, and has no effect without `flow = \"steady\"`; add that, or remove it");
+        return fail(&key.field("flow_every"), message);
+    }
+    let Some(flow) = stage.flow else { return Ok(()) };
+    let key = key.field("flow");
+    if case.flow.is_none() {
+        return fail(&key, "has no effect without [flow], which it is for; add `[flow]` or remove it");
+    }
+    match flow {
+        StageFlow::InMotion(word) if stage.kind == StageKind::Static => {
+            let word = word.name();
+            let message = format!(
+                "is {word:?}, but only dynamic stages have it and this one is static, which finds the flow at its \
+                 start; remove it"
+            );
+            fail(&key, message)
+        }
+        StageFlow::InMotion(_) => Ok(()),
+        StageFlow::Over(_) if stage.kind == StageKind::Dynamic => fail(
+            &key,
+            "has a time, but only static stages have it and this one is dynamic; write `flow = \"steady\"` or remove it",
+        ),
+        StageFlow::Over(_) if place == 0 => fail(
+            &key,
+            "has a time, and is in the first stage, before which there is no flow that could go on; let a stage \
+             without it come first, which finds the steady flow",
+        ),
+        StageFlow::Over(time) => time.check(&key),
+    }
 }
 
 /// Refuses drains that act already.

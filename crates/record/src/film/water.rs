@@ -1,6 +1,6 @@
 //! Water that flows in joints as the film of a model has it.
 
-use enmm_observe::{FlowLine, JointFlow};
+use enmm_observe::{FlowLine, WaterInJoints};
 use enmm_report::{Water, WaterDrain, WaterInlet};
 
 use enmm::model::Simulation;
@@ -9,7 +9,7 @@ use crate::flow::FlowRecord;
 
 /// Water in the joints of a model now; none where it does not flow.
 pub fn water(simulation: &Simulation) -> Option<Water> {
-    let flow = JointFlow::of(simulation, &simulation.state().stage_displacement)?;
+    let flow = WaterInJoints::of(simulation)?;
     let stage = simulation.state().seepage.as_ref()?.balances.last()?.stage as usize;
     let stage = &simulation.case().stages[stage].name;
     let mut nodes: Vec<(u32, [f64; 3])> = flow.lines.iter().flat_map(ends).collect();

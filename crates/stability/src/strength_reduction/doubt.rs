@@ -131,8 +131,8 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
 
 /// Water in joints that presses otherwise in the trials than in limit analysis, which knows no openings.
 fn other_water(reduction: &Reduction, case: &Case) -> Option<String> {
-    let in_trials = reduction.simulation.joint_water()?;
-    let at_start = staged(case).ok()?.0.joint_water()?;
+    let in_trials = reduction.simulation.pressure_in_joints()?;
+    let at_start = staged(case).ok()?.0.pressure_in_joints()?;
     let apart = (in_trials - at_start).abs() / in_trials.max(at_start);
     (apart > WATER_APART).then(|| {
         format!(
