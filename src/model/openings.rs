@@ -17,6 +17,8 @@ pub(super) const ROUNDS_MAX: u32 = 20;
 const ASKED: f64 = 1e-2;
 /// Change of pressure, over the greatest one, that the apertures which openings ask for may still make.
 const PRESSED: f64 = 1e-3;
+/// Share of these two at which rounds end at once; between, they go on as long as each takes half of what is left.
+const FINE: f64 = 0.1;
 
 impl Simulation {
     /// Whether apertures of the stage in progress follow openings and have not come to terms with them.
@@ -106,9 +108,13 @@ impl Seen<'_> {
                 (most, piece) = (own, k as u32);
             }
         }
-        let count = seepage.balances.last().and_then(|balance| balance.rounds).map_or(0, |rounds| rounds.count);
-        let agree = most <= ASKED && is_near(&seepage.unknowns, &self.steady(opened.clone(), None)?.unknowns);
-        if agree || count == ROUNDS_MAX {
+        let before = seepage.balances.last().and_then(|balance| balance.rounds);
+        let count = before.map_or(0, |rounds| rounds.count);
+        let apart = if most <= ASKED { apart(&seepage.unknowns, &self.steady(opened.clone(), None)?.unknowns) } else { 1.0 };
+        let agree = most <= ASKED && apart <= PRESSED;
+        let gains = before.is_none_or(|rounds| most <= 0.5 * rounds.asked);
+        let is_fine = most <= FINE * ASKED && apart <= FINE * PRESSED;
+        if agree && (is_fine || !gains) || count == ROUNDS_MAX {
             return Ok(Outcome::Over(Rounds { count, asked: most, piece, is_over: true, agree }));
         }
         let kept = seepage.rounds.len().saturating_sub(DEPTH);
@@ -152,9 +158,9 @@ fn log(aperture: f64) -> f64 {
     if aperture > 0.0 { libm::log(aperture) } else { 0.0 }
 }
 
-/// Whether pressures of unknowns (m) are those of others, but for a share of the greatest one.
-fn is_near(a: &[f64], b: &[f64]) -> bool {
+/// Greatest difference of the pressures of two lists of unknowns (m), over the greatest pressure of the first.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
     let greatest = a.iter().map(|&u| pressure_head(u)).fold(0.0, f64::max);
     let apart = a.iter().zip(b).map(|(&a, &b)| (pressure_head(a) - pressure_head(b)).abs()).fold(0.0, f64::max);
-    apart <= PRESSED * greatest
+    if apart > 0.0 { apart / greatest } else { 0.0 }
 }
