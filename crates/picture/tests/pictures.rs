@@ -312,9 +312,9 @@ fn water_in_joints_shows_heads_flows_tables_outcrops_and_drains() {
     }
     // The deepest colour of the scale at its greatest width, and the table at a quarter of the second joint.
     let drawn = Drawn::all(&svg);
-    let deep = drawn.iter().find(|shape| shape.is("stroke-width", "6") && shape.is("stroke", "#fde953"));
+    let deep = drawn.iter().find(|shape| shape.is("stroke-width", "6") && shape.is("stroke", "#fdeb4c"));
     let deep = deep.expect("the full joint").middle();
-    assert_eq!(colour_at(&pixels(&picture), [deep[0] + 100.0, deep[1]]), "#fde953");
+    assert_eq!(colour_at(&pixels(&picture), [deep[0] + 100.0, deep[1]]), "#fdeb4c");
     assert!(drawn.iter().any(|shape| shape.is("stroke-width", "1.8")), "little flow is thin");
     let dry = WaterInJoints { lines: flow.lines[2..].to_vec(), ..WaterInJoints::default() };
     let dry = flow_picture(&stage, &dry);

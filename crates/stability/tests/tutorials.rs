@@ -259,7 +259,7 @@ fn the_row_of_drains_has_the_factors_of_its_page() {
         let (uplift, long) = (0.5 * 9810.0 * 6.0 * left, run.hypot(run * slope));
         let flow = transmissivity(1e-4) * (6.0 + left * FOOT[1] / Wedge::length()) / left * 6e4;
         let exact = wedge.factor(uplift, 6.0);
-        let found = limit(&with(&text, "[19.5, 12.75]", end));
+        let found = limit(&with(&text, "[19.5, 12.75]]\nactive", &format!("{end}]\nactive")));
         assert_near(found, exact);
         let numbers = format!("{long:.1} | {:.3} | {exact:.4} | {found:.4} | {flow:.3} |", uplift / 1e6);
         assert_has(&page, &format!("| {angle}° upwards | {numbers}"));
