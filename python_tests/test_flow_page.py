@@ -4,6 +4,7 @@ import csv
 import json
 
 import browser
+import meshio
 import pytest
 
 LITRES = 6e4  # Litres per minute in a m³/s.
@@ -121,8 +122,20 @@ def test_each_stage_has_a_picture_of_its_flow(flowing):
     assert "row 0.235 L/min per m" in text and "pressure head [m]" in text
 
 
+# The level joint carries the same flow all along, in the direction of its lines.
+def test_frames_have_heads_and_flows(flowing):
+    frames = sorted((flowing / "frames").glob("flow_*.vtu"))
+    first = meshio.read(frames[0])
+    head, pressure, flow = (first.cell_data[name][0] for name in ("head", "pressure", "flow"))
+    assert head[pressure > 0].max() < 7 and abs(flow).max() == pytest.approx(T * 0.3, rel=1e-9)
+    assert first.point_data["pressure_head"].max() == pytest.approx(3, rel=1e-9)
+    last = meshio.read(frames[-1])
+    assert abs(last.cell_data["flow"][0]).max() == pytest.approx(T * 0.6, rel=1e-3)
+
+
 # Without water that flows the page has no line of the layer, and there is no picture of it.
 def test_results_without_flow_know_none(results):
     assert "drawFlow" not in (results / "report.html").read_text()
-    assert not list(results.glob("*_flow.*")) and not (results / "flow.csv").exists()
+    assert not list((results / "frames").glob("flow_*")) and not list(results.glob("*_flow.*"))
+    assert not (results / "flow.csv").exists()
     assert json.loads((results / "summary.json").read_text()).get("flow") is None
