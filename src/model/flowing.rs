@@ -1,4 +1,4 @@
-//! What is seen of water that flows in joints: flow in each piece, and where water enters and leaves.
+//! Water that flows in joints as it is seen: flow in each piece, and where water enters and leaves.
 
 use enmm_seepage::{Condition, law};
 

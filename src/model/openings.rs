@@ -110,7 +110,8 @@ impl Seen<'_> {
         }
         let before = seepage.balances.last().and_then(|balance| balance.rounds);
         let count = before.map_or(0, |rounds| rounds.count);
-        let apart = if most <= ASKED { apart(&seepage.unknowns, &self.steady(opened.clone(), None)?.unknowns) } else { 1.0 };
+        let apart =
+            if most <= ASKED { apart(&seepage.unknowns, &self.steady(opened.clone(), None)?.unknowns) } else { 1.0 };
         let agree = most <= ASKED && apart <= PRESSED;
         let gains = before.is_none_or(|rounds| most <= 0.5 * rounds.asked);
         let is_fine = most <= FINE * ASKED && apart <= FINE * PRESSED;

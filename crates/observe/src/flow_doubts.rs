@@ -55,7 +55,7 @@ pub fn lifted_blocks(simulation: &Simulation) -> Vec<LiftedBlock> {
     lifted
 }
 
-/// What a user should know of the flow in joints that was found last.
+/// Doubts about the flow in joints that was found last.
 pub fn flow_doubts(simulation: &Simulation) -> Vec<String> {
     let Some(flow) = WaterInJoints::of(simulation) else { return Vec::new() };
     fast(simulation, &flow).into_iter().chain(lifted(simulation)).collect()

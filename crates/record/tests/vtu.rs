@@ -7,9 +7,12 @@ use std::path::{Path, PathBuf};
 
 use crate::sample::{Sample, sample};
 use enmm::geometry::{Point, Vector};
-use enmm_observe::{BoltCondition, BoltLine, BondState, FlowLine, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge};
+use enmm_observe::{
+    BoltCondition, BoltLine, BondState, FlowLine, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge,
+};
 use enmm_record::vtu::{
-    Part, PvdWriter, Structures, write_bolts_vtu, write_flow_vtu, write_joints_vtu, write_supports_vtu, write_vtu, write_water_vtu,
+    Part, PvdWriter, Structures, write_bolts_vtu, write_flow_vtu, write_joints_vtu, write_supports_vtu, write_vtu,
+    write_water_vtu,
 };
 use roxmltree::{Document, Node};
 

@@ -64,7 +64,7 @@ function drawnAt(slope, k, placeX, placeY) {
   return slope.toScreen(now(slope.x), now(slope.y));
 }
 
-// What the drawing of a note needs and no frame changes.
+// Measures of a note that no frame changes.
 function measuresOf(note) {
   if (note.measures) return note.measures;
   const flows = note.pieces.map(([, , , flow]) => Math.abs(flow)),
@@ -174,7 +174,7 @@ function litres(flow) {
   return digits(flow * LITRES_PER_MINUTE).replace("-", "−");
 }
 
-// What enters and leaves at each place in the stage of now.
+// Water that enters and leaves at each place in the stage of now.
 function waterTable(note) {
   const { greatest, deepest } = measuresOf(note);
   const shown = note.inlets.filter((inlet) => Math.max(inlet.enters, inlet.leaves, inlet.runs_off) > NO_FLOW * greatest);

@@ -1,4 +1,4 @@
-//! What the problems of water that flows in joints share: a plate with joints between two heads, and what is found.
+//! Parts of the problems of water that flows in joints: a plate with joints between two heads, and what is found.
 
 use enmm::geometry::Point;
 use enmm::model::Simulation;
@@ -33,7 +33,7 @@ pub struct Plate {
     pub joints: Vec<([[f64; 2]; 2], f64)>,
     /// Heads: name, segment and level (m).
     pub heads: Vec<(&'static str, [[f64; 2]; 2], f64)>,
-    /// What else the case has before its stage.
+    /// Other parts of the case before its stage.
     pub more: String,
 }
 

@@ -88,7 +88,8 @@ impl<'a> Schema<'a> {
     pub fn fitting(self, kind: &str) -> Self {
         let alternatives = self.resolved().node.get("anyOf").and_then(Value::as_array);
         let all = alternatives.into_iter().flatten().map(|alternative| self.at(alternative));
-        let fits = |schema: &Self| ["array", "object"].iter().all(|parts| (schema.kind() == *parts) == (kind == *parts));
+        let fits =
+            |schema: &Self| ["array", "object"].iter().all(|parts| (schema.kind() == *parts) == (kind == *parts));
         all.into_iter().find(fits).unwrap_or(self)
     }
 
