@@ -2,10 +2,12 @@
 //! the pressures and flows of hand calculations, and the same bits by communication steps, returns, bytes and threads;
 //! what enters leaves; a flow that is held refuses them.
 
+use allocation_counter::measure;
+
 use enmm::cosimulation::{Cosimulation, CosimulationError, Input, Interpolation, Named};
 use enmm::model::Seepage;
 
-use crate::common::{case, refusal, run_stage, simulation};
+use crate::common::{case, refusal, run_stage, simulation, step};
 
 /// Unit weight of the water (N/m³).
 const WEIGHT: f64 = 9810.0;
@@ -241,7 +243,8 @@ fn threads_do_not_change_the_bits() {
 
 #[test]
 fn a_stage_sets_heads_as_a_host_does() {
-    let mut by_stage = host(&format!("{FOLLOWS}heads = {{ heel = 7.0 }}\nrain = {{ crest = 1e-9 }}\ndrain = [\"row\"]\n"));
+    let mut by_stage =
+        host(&format!("{FOLLOWS}heads = {{ heel = 7.0 }}\nrain = {{ crest = 1e-9 }}\ndrain = [\"row\"]\n"));
     go(&mut by_stage, 8.0 * STEP, STEP);
     let mut by_host = host(FOLLOWS);
     good(by_host.start());
@@ -308,6 +311,17 @@ fn keys_of_a_stage_that_make_no_sense_are_refused() {
     }
     let held = dam(1.3, "heads = { toe = 5.0 }\n");
     assert!(refusal(&held).contains("stage[1].heads.toe: is in a dynamic stage, which holds"), "{}", refusal(&held));
+}
+
+#[test]
+fn a_step_in_which_nothing_around_the_joints_has_changed_allocates_nothing() {
+    let mut model = simulation(&dam(1.3, AT_ONCE));
+    model.set_serial(true);
+    run_stage(&mut model);
+    assert!(model.next_stage().expect("a stage"));
+    step(&mut model, 100);
+    let found = measure(|| step(&mut model, 50));
+    assert_eq!(found.count_total, 0, "{found:?}");
 }
 
 /// No host can set such rain; a solver that fails has no other cause that a test could make.
