@@ -891,11 +891,11 @@ typedef struct enmm_totals {
    */
   uint64_t broken_joints;
   /**
-   * Water that has entered joints in dynamic stages, m³ per metre (m2).
+   * Water that has entered joints in dynamic stages, m3 per metre (m2).
    */
   double water_entered;
   /**
-   * Water that has left joints in dynamic stages, m³ per metre (m2).
+   * Water that has left joints in dynamic stages, m3 per metre (m2).
    */
   double water_left;
   /**
@@ -1554,16 +1554,13 @@ enmm_status enmm_set_drain(struct enmm_model *model, uint32_t drain, int32_t is_
 enmm_status enmm_jump(struct enmm_model *model);
 
 /**
- * Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block or the
- * port, the head, the rain or the drain where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved
- * states. enmm_set_interpolation sets that of all inputs.
+ * Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block, the port,
+ * the head, the rain or the drain where it has one, `mode` a value of enmm_interpolation. Acts from the next step on,
+ * and is part of saved states. enmm_set_interpolation sets that of all inputs.
  *
  * Errors: ENMM_INVALID_ARGUMENT for another number, or an index that does not exist.
  */
-enmm_status enmm_set_input_interpolation(struct enmm_model *model,
-                                         int32_t input,
-                                         uint32_t index,
-                                         int32_t mode);
+enmm_status enmm_set_input_interpolation(struct enmm_model *model, int32_t input, uint32_t index, int32_t mode);
 
 /**
  * Returns the inputs that are set now: gravity (m/s2, two numbers), acceleration of the base (m/s2, two numbers),

@@ -137,9 +137,9 @@ class Totals(NamedTuple):
     broken_joints: int
     """Joints whose last bond has broken."""
     water_entered: float
-    """Water that has entered joints in dynamic stages, m³ per metre (m2)."""
+    """Water that has entered joints in dynamic stages, m3 per metre (m2)."""
     water_left: float
-    """Water that has left joints in dynamic stages, m³ per metre (m2)."""
+    """Water that has left joints in dynamic stages, m3 per metre (m2)."""
     flow_residual: float
     """Largest imbalance of the flow at a node of the joints (m2/s)."""
     seepage_height: float
