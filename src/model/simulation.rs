@@ -320,7 +320,8 @@ impl Simulation {
     pub fn advance_part(&mut self, dt: f64, wanted: Wanted) -> Result<StepReport, StepError> {
         self.looks.forget();
         self.follow_flow()?;
-        let made = step::advance_part(&self.built.model, self.regime, &mut self.state, &mut self.workspace, dt, wanted)?;
+        let made =
+            step::advance_part(&self.built.model, self.regime, &mut self.state, &mut self.workspace, dt, wanted)?;
         self.pass_water(dt);
         Ok(made)
     }
