@@ -226,6 +226,7 @@ fn rough_joints_have_the_apertures_of_barton() {
         };
         near(&apertures(&model), hydraulic(start));
         run_stage(&mut model);
+        assert!(model.next_stage().expect("a stage"));
         near(&apertures(&model), hydraulic(start - load / 1e10));
         let flat = text.replace("kind = \"barton_bandis\"", "kind = \"mohr_coulomb\"").replace("jcs = 100e6\n", "");
         assert!(refusal(&flat).contains("a law of kind mohr_coulomb does not have it"));
