@@ -53,12 +53,11 @@ fn columns(count: usize, stiffness: f64, more: &str) -> String {
 /// With e = e0 + p/kn, q = -e³/12μ dp/dx makes e⁴ linear.
 #[test]
 fn a_joint_between_free_columns_has_the_flow_of_its_openings() {
-    let count = by_extent([80, 80, 80]);
     for (stiffness, exact, middle) in [(1e10, 9.66875e-7, 53_554.7), (1e9, 3.12500e-6, 70_747.6)] {
         let fourth = |p: f64| (APERTURE + p / stiffness).powi(4);
         let formula = stiffness * (fourth(PRESSURE) - fourth(0.0)) / (48.0 * 1e-3 * 10.0);
         assert!((formula / exact - 1.0_f64).abs() < 1e-5, "{formula}");
-        let mut model = simulation(&columns(count, stiffness, ""));
+        let mut model = simulation(&columns(80, stiffness, ""));
         run_stage(&mut model);
         assert!(model.next_stage().expect("a stage"));
         run_stage(&mut model);
@@ -111,7 +110,7 @@ fn uplift(model: &Simulation) -> f64 {
 /// which does not count.
 #[test]
 fn a_coupled_slope_does_not_depend_on_its_mesh() {
-    let sizes: &[f64] = by_extent([&[4.0, 2.0], &[4.0, 2.0, 1.0], &[4.0, 2.0, 1.0]]);
+    let sizes: &[f64] = by_extent([&[2.0, 1.0], &[2.0, 1.0, 0.5], &[2.0, 1.0, 0.5]]);
     for (law, flow) in [
         ("", "aperture = 2e-4\ncoupled = true\n"),
         ("\nnormal_stiffness = 2e9\nshear_stiffness = 1e9", "aperture = 2e-4\naperture_min = 2e-5\ncoupled = true\n"),
@@ -201,4 +200,45 @@ fn stages_without_time_or_answer_are_told_and_states_with_wrong_rounds_refused()
     assert!(apart.unsettled_apertures().is_none() && balance(&apart).rounds.is_none());
     assert!(refusal(&columns(4, 1e10, "").replace("coupled = true", "coupled = 1")).contains("coupled"));
     assert!(!example("plane_slide").contains("[flow]"), "the case of other tests is dry");
+}
+
+/// Apertures (m) of the level joint now.
+fn apertures(model: &Simulation) -> Vec<f64> {
+    flowing(model).apertures.iter().flatten().copied().filter(|aperture| *aperture > 0.0).collect()
+}
+
+/// Barton, Bandis and Bakhtar: E = JRC/5·(0.2σc/JCS - 0.1) mm at the start, and e = E²/JRC^2.5 µm, at most E; the load
+/// closes E by σ/kn.
+#[test]
+fn rough_joints_have_the_apertures_of_barton() {
+    let load = 2e5 + 2600.0 * 9.81;
+    for (jrc, key, start) in [
+        (10.0_f64, "mechanical_aperture = 2.5e-4", 2.5e-4_f64),
+        (10.0, "intact_strength = 120e6", 1e-3 * 2.0 * (0.2 * 1.2 - 0.1)),
+        (4.0, "mechanical_aperture = 2e-4", 2e-4),
+    ] {
+        let hydraulic = |mechanical: f64| mechanical.min(1e-6 * (1e6 * mechanical).powi(2) / jrc.powf(2.5));
+        let rough = format!("kind = \"barton_bandis\"\njrc = {jrc:?}\njcs = 100e6\n{key}\n");
+        let text = columns(2, 1e10, "");
+        let law = text.find("aperture = 1.2").expect("an aperture");
+        let end = law + text[law..].find('\n').expect("a line") + 1;
+        let text = format!("{}{rough}{}", &text[..law], &text[end..]);
+        let mut model = simulation(&text);
+        let near = |found: &[f64], exact: f64| {
+            assert!(!found.is_empty() && found.iter().all(|e| (e / exact - 1.0).abs() < 2e-4), "{found:?} {exact:e}");
+        };
+        near(&apertures(&model), hydraulic(start));
+        run_stage(&mut model);
+        assert!(model.next_stage().expect("a stage"));
+        near(&apertures(&model), hydraulic(start - load / 1e10));
+        let flat = text.replace("kind = \"barton_bandis\"", "kind = \"mohr_coulomb\"").replace("jcs = 100e6\n", "");
+        assert!(refusal(&flat).contains("a law of kind mohr_coulomb does not have it"));
+        assert!(refusal(&text.replace(key, &format!("aperture = 1e-4\n{key}"))).contains("gives the aperture, and so"));
+        let weak = refusal(&text.replace(key, "intact_strength = 40e6"));
+        assert!(weak.contains("intact_strength: is 40000000 Pa, and gives a mechanical aperture of -"), "{weak}");
+        let dry = &text[..text.find("[flow]").expect("flow")];
+        let dry = format!("{dry}[[stage]]\nname = \"dry\"\nkind = \"static\"\nduration = 1.0\n");
+        let dry = dry.replace("friction_deg = 0\naperture = 0", "friction_deg = 0");
+        assert!(refusal(&dry).contains("has no effect without [flow]"), "{}", refusal(&dry));
+    }
 }

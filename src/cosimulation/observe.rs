@@ -169,16 +169,13 @@ pub const TOTALS: [Quantity<Totals>; 19] = [
         totals.broken_length
     }),
     Quantity::count(["broken_joints"; 2], "Joints whose last bond has broken", |totals| totals.broken_joints as f64),
-    Quantity::plain(
-        "water_entered",
-        "m²",
-        "Water that has entered joints in dynamic stages, m³ per metre",
-        |totals| totals.flow.passed[0],
-    ),
-    Quantity::plain("water_left", "m²", "Water that has left joints in dynamic stages, m³ per metre", |totals| {
+    Quantity::plain("water_entered", "m2", "Water that has entered joints in dynamic stages, m3 per metre", |totals| {
+        totals.flow.passed[0]
+    }),
+    Quantity::plain("water_left", "m2", "Water that has left joints in dynamic stages, m3 per metre", |totals| {
         totals.flow.passed[1]
     }),
-    Quantity::plain("flow_residual", "m²/s", "Largest imbalance of the flow at a node of the joints", |totals| {
+    Quantity::plain("flow_residual", "m2/s", "Largest imbalance of the flow at a node of the joints", |totals| {
         totals.flow.residual
     }),
     Quantity::plain(

@@ -74,6 +74,8 @@ pub struct FlowNet {
     pub drains: Vec<Drain>,
     /// Aperture (m) at the start by law; 0 for joints that do not conduct.
     pub apertures: Vec<f64>,
+    /// Mechanical aperture (m) at the start by law, and the hydraulic one over its square (1/m); none of smooth ones.
+    pub mechanical: Vec<Option<[f64; 2]>>,
     /// Least and greatest aperture (m) of joints that conduct.
     pub range: [f64; 2],
     /// Dynamic viscosity (Pa s).
@@ -131,6 +133,7 @@ impl FlowNet {
             rains: Vec::new(),
             drains: Vec::new(),
             apertures: Vec::new(),
+            mechanical: Vec::new(),
             range: [0.0; 2],
             viscosity: 1.0,
             density: 0.0,
@@ -141,11 +144,18 @@ impl FlowNet {
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not
-    /// conduct (Eq. 96). Closure that is the solver's own does not count.
+    /// conduct (Eqs. 96, 103). Closure that is the solver's own does not count.
     pub fn aperture(&self, law: LawId, opening: f64, closes: bool) -> f64 {
         let start = self.apertures[law.index()];
         let opening = if closes { opening } else { opening.max(0.0) };
-        if start > 0.0 { (start + opening).clamp(self.range[0], self.range[1]) } else { 0.0 }
+        let aperture = match self.mechanical[law.index()] {
+            Some([mechanical, smoothness]) => {
+                let mechanical = (mechanical + opening).max(0.0);
+                mechanical.min(smoothness * mechanical * mechanical)
+            }
+            None => start + opening,
+        };
+        if start > 0.0 { aperture.clamp(self.range[0], self.range[1]) } else { 0.0 }
     }
 
     /// Whether a piece conducts at each node.

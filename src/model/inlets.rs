@@ -20,9 +20,9 @@ pub struct InletState {
 
 /// Numbers of heads, rain and drains as outputs show them.
 pub const INLET_QUANTITIES: [Quantity<InletState>; 3] = [
-    Quantity::plain("inflow", "m²/s", "Water that enters joints there, less what leaves them", |inlet| inlet.inflow),
-    Quantity::plain("outflow", "m²/s", "Water that leaves joints there, less what enters them", |inlet| inlet.outflow),
-    Quantity::plain("run_off", "m²/s", "Rain that joints do not take, 0 at heads and drains", |inlet| inlet.run_off),
+    Quantity::plain("inflow", "m2/s", "Water that enters joints there, less what leaves them", |inlet| inlet.inflow),
+    Quantity::plain("outflow", "m2/s", "Water that leaves joints there, less what enters them", |inlet| inlet.outflow),
+    Quantity::plain("run_off", "m2/s", "Rain that joints do not take, 0 at heads and drains", |inlet| inlet.run_off),
 ];
 
 /// Water that flows in some joints.

@@ -13,7 +13,7 @@ use crate::limits::RAIN_MAX;
 use crate::{CUT_LAW, Case, JointLaw, PointList, Stage, StageKind};
 
 /// Hydraulic apertures of joints.
-const APERTURE: Rule = Range::above(0.0).to(1.0).of(METRE).usual([1e-6, 2e-2], "joints have 1e-5 to 1e-3 m");
+pub(crate) const APERTURE: Rule = Range::above(0.0).to(1.0).of(METRE).usual([1e-6, 2e-2], "joints have 1e-5 to 1e-3 m");
 /// The same of a law, whose joints may be closed to water.
 pub(crate) const LAW_APERTURE: Rule = APERTURE
     .in_range(Range::from(0.0).to(1.0))
@@ -204,7 +204,8 @@ impl Case {
     /// where neither the law nor `[flow]` says so. Construction joints are closed.
     pub fn aperture(&self, name: &str, law: &JointLaw) -> Option<f64> {
         let shared = self.flow.as_ref().and_then(|flow| flow.aperture);
-        law.aperture.or(if name == CUT_LAW { Some(0.0) } else { shared })
+        let rough = law.mechanical().map(|mechanical| mechanical.min(law.smoothness() * mechanical * mechanical));
+        law.aperture.or(rough).or(if name == CUT_LAW { Some(0.0) } else { shared })
     }
 
     /// Least and greatest aperture (m) that openings may lead to; none where no joint conducts.

@@ -35,7 +35,7 @@ pub struct FlowLine {
 pub const FLOW_QUANTITIES: [Quantity<FlowLine>; 5] = [
     Quantity::plain("head", "m", "Head, mean of both ends", |line| mean(line.heads)),
     Quantity::plain("pressure", "Pa", "Pressure of the water, mean of both ends", |line| mean(line.pressure)),
-    Quantity::plain("flow", "m²/s", "Flow of water from the first to the second end", |line| line.flow),
+    Quantity::plain("flow", "m2/s", "Flow of water from the first to the second end", |line| line.flow),
     Quantity::plain("aperture", "m", "Hydraulic aperture, mean of both ends", |line| line.aperture),
     Quantity::plain("filling", "", "Share of its capacity of a film without pressure", |line| line.filling),
 ];

@@ -17,8 +17,9 @@
 //! | sums for hosts | [`Totals`] | [`TOTALS`] |
 //! | ports | [`PortState`] | [`PORT_QUANTITIES`] |
 //! | monitors | [`MonitorState`] | [`MONITOR_QUANTITIES`] |
+//! | heads, rain and drains | [`InletState`] | [`INLET_QUANTITIES`] |
 //!
-//! Blocks, energies, ports, monitors and sums for hosts are worked out by the engine, because the C library and the
+//! Blocks, energies, ports, monitors, heads and sums for hosts are worked out by the engine, because the C library and the
 //! FMUs read them between two steps.
 #![forbid(unsafe_code)]
 
@@ -38,8 +39,8 @@ mod water;
 
 pub use enmm::cosimulation::{PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use enmm::model::{
-    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, Ledger, MONITOR_QUANTITIES, MonitorState,
-    Quantity, STRENGTH_QUANTITIES, StepReport,
+    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, INLET_QUANTITIES, InletState, Ledger,
+    MONITOR_QUANTITIES, MonitorState, Quantity, STRENGTH_QUANTITIES, StepReport,
 };
 
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};

@@ -5,7 +5,7 @@ use enmm_seepage::Condition;
 use crate::contact::{Boundary, EdgeId, Facings, LawId};
 use crate::flow::{self, FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside, is_open};
 use crate::geometry::{Point, segment};
-use crate::model::case::{self, Case, Flow, Head, Invalid};
+use crate::model::case::{self, Case, Flow, Head, Invalid, JointLaw};
 use crate::state::{Model, Water};
 
 use super::joints::Joints;
@@ -33,6 +33,8 @@ pub(super) fn net(
     (net.viscosity, net.storage, net.coupled) = (keys.viscosity, keys.storage, keys.coupled);
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
+    let rough = |law: &JointLaw| law.mechanical().map(|mechanical| [mechanical, law.smoothness()]);
+    net.mechanical = case.joint_laws.values().map(rough).collect();
     net.heads = heads(case, &net, faces.tolerance)?;
     net.rains = super::rain::rains(case, &net, faces.tolerance)?;
     net.drains = super::drains::drains(case, &net, &lines, faces.tolerance)?;
