@@ -10,9 +10,9 @@ pub const PROBLEM: Problem = Problem {
              catches pieces that do not meet at their ends, wrong lengths and apertures of another law",
     parameters: &[
         Parameter::new("length", "m", 10.0, [1.0, 200.0], "length of the level joint"),
-        Parameter::new("left", "m", 9.0, [6.0, 100.0], "head at its left end over its length/10"),
-        Parameter::new("right", "m", 6.5, [6.0, 100.0], "head at its right end over its length/10"),
-        Parameter::new("below", "m", 6.2, [6.0, 100.0], "head at the foot of the joint that meets it, over length/10"),
+        Parameter::new("left", "", 9.0, [6.0, 100.0], "head at its left end over its length/10"),
+        Parameter::new("right", "", 6.5, [6.0, 100.0], "head at its right end over its length/10"),
+        Parameter::new("below", "", 6.2, [6.0, 100.0], "head at the foot of the joint that meets it, over length/10"),
         Parameter::new("aperture", "m", 1e-4, [1e-5, 1e-3], "aperture of its left part"),
         Parameter::new("ratio", "", 2.0, [0.1, 10.0], "aperture of its right part over that"),
         Parameter::new("meets", "", 0.3, [0.1, 0.9], "place where both meet over its length"),
