@@ -51,8 +51,14 @@ impl<'a> Seen<'a> {
         let step = of_stage.time / f64::from(of_stage.steps);
         let start = held(&before.unknowns)?;
         let (mut unknowns, mut flooded, mut holds) = (before.unknowns.clone(), Vec::new(), start);
-        let mut own =
-            FlowBalance { stage: self.stage as u32, sums: Vec::new(), residual: 0.0, seeps: None, water: None, rounds: None };
+        let mut own = FlowBalance {
+            stage: self.stage as u32,
+            sums: Vec::new(),
+            residual: 0.0,
+            seeps: None,
+            water: None,
+            rounds: None,
+        };
         let mut water =
             StageWater { time: of_stage.time, sums: vec![[0.0; 3]; self.net.inlet_count()], stored: 0.0, drains: 0.0 };
         for k in 1..=of_stage.steps {
@@ -83,8 +89,8 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// Volume (m²) and compliance (m² per m of head) of each piece with apertures (m) at its nodes, with the rock beside
-    /// it.
+    /// Volume (m²) and compliance (m² per m of head) of each piece with apertures (m) at its nodes, with the rock
+    /// beside it.
     fn room(&self, apertures: &[[f64; 2]]) -> (Vec<f64>, Vec<f64>) {
         let weight = self.weight();
         let of_piece = |(piece, &[e0, e1]): (&FlowPiece, &[f64; 2])| {

@@ -120,7 +120,12 @@ impl Recorder {
         let texts = simulation.dry_drains().into_iter().map(|doubt| format!("stage {name:?}: {doubt}"));
         let drains = simulation.unfinished_drainage().map(|doubt| format!("stage {name:?}: {doubt}"));
         let apertures = simulation.unsettled_apertures().map(|doubt| format!("stage {name:?}: {doubt}"));
-        texts.chain(drains).chain(apertures).collect::<Vec<_>>().into_iter().try_for_each(|text| self.warn(simulation, text))
+        texts
+            .chain(drains)
+            .chain(apertures)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .try_for_each(|text| self.warn(simulation, text))
     }
 
     /// Warns of joints that have slipped when the ground has shaken: their slip depends on the mesh.

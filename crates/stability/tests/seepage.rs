@@ -109,7 +109,9 @@ fn uplift_of(simulation: &Simulation) -> f64 {
     let of = |piece: &FlowPiece| {
         let [a, b] = piece.nodes.map(|node| net.places[node as usize]);
         let part = wet(piece.nodes.map(|node| unknowns[node as usize]), [a.y, b.y]).filter(|_| a.x != b.x);
-        part.map_or(0.0, |part| 0.5 * (part.heads[0] + part.heads[1]) * (part.span[1] - part.span[0]).abs() * piece.length)
+        part.map_or(0.0, |part| {
+            0.5 * (part.heads[0] + part.heads[1]) * (part.span[1] - part.span[0]).abs() * piece.length
+        })
     };
     9810.0 * net.pieces.iter().map(of).sum::<f64>()
 }

@@ -83,12 +83,13 @@ impl<'a> Schema<'a> {
         }
     }
 
-    /// Returns the alternative for a list (`array`), a table (`object`) or any other value (``); the schema itself where
-    /// there are none.
+    /// Returns the alternative for a list (`array`), a table (`object`) or any other value (an empty word); the schema
+    /// itself where there are none.
     pub fn fitting(self, kind: &str) -> Self {
         let alternatives = self.resolved().node.get("anyOf").and_then(Value::as_array);
         let all = alternatives.into_iter().flatten().map(|alternative| self.at(alternative));
-        let fits = |schema: &Self| ["array", "object"].iter().all(|parts| (schema.kind() == *parts) == (kind == *parts));
+        let fits =
+            |schema: &Self| ["array", "object"].iter().all(|parts| (schema.kind() == *parts) == (kind == *parts));
         all.into_iter().find(fits).unwrap_or(self)
     }
 
