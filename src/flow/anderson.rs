@@ -1,5 +1,5 @@
-//! Acceleration of a fixed point by its last rounds (D. G. Anderson, Iterative procedures for nonlinear integral equations,
-//! 1965).
+//! Acceleration of a fixed point by its last rounds (D. G. Anderson, Iterative procedures for nonlinear integral
+//! equations, 1965).
 
 /// Differences of rounds that count.
 pub const DEPTH: usize = 4;

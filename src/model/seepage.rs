@@ -15,8 +15,8 @@ use super::bonds::{BondState, bond_states};
 use super::case::{Invalid, Stage, StageKind};
 
 impl Simulation {
-    /// Finds the flow in the joints as they are at the start of a stage, if water flows in them: the steady one, or that
-    /// at the end of the time which the stage gives it.
+    /// Finds the flow in the joints as they are at the start of a stage, if water flows in them: the steady one, or
+    /// that at the end of the time which the stage gives it.
     ///
     /// # Errors
     /// No flow has been found.

@@ -89,8 +89,8 @@ impl<'a> Seen<'a> {
         })
     }
 
-    /// Volume (m²) and compliance (m² per m of head) of each piece with apertures (m) at its nodes, with the rock beside
-    /// it.
+    /// Volume (m²) and compliance (m² per m of head) of each piece with apertures (m) at its nodes, with the rock
+    /// beside it.
     fn room(&self, apertures: &[[f64; 2]]) -> (Vec<f64>, Vec<f64>) {
         let weight = self.weight();
         let of_piece = |(piece, &[e0, e1]): (&FlowPiece, &[f64; 2])| {

@@ -222,7 +222,8 @@ fn validate_course(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check
         StageFlow::InMotion(_) => Ok(()),
         StageFlow::Over(_) if stage.kind == StageKind::Dynamic => fail(
             &key,
-            "has a time, but only static stages have it and this one is dynamic; write `flow = \"steady\"` or remove it",
+            "has a time, but only static stages have it and this one is dynamic; write `flow = \"steady\"`, or \
+             remove it",
         ),
         StageFlow::Over(_) if place == 0 => fail(
             &key,

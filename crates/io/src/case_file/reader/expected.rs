@@ -83,8 +83,8 @@ impl<'a> Schema<'a> {
         }
     }
 
-    /// Returns the alternative for a list (`array`), a table (`object`) or any other value (``); the schema itself where
-    /// there are none.
+    /// Returns the alternative for a list (`array`), a table (`object`) or any other value (an empty word); the schema
+    /// itself where there are none.
     pub fn fitting(self, kind: &str) -> Self {
         let alternatives = self.resolved().node.get("anyOf").and_then(Value::as_array);
         let all = alternatives.into_iter().flatten().map(|alternative| self.at(alternative));
