@@ -384,6 +384,18 @@ enum enmm_input
    * Inputs of the port that the index names.
    */
   ENMM_INPUT_PORT = 5,
+  /**
+   * Level of the head that the index names.
+   */
+  ENMM_INPUT_HEAD = 6,
+  /**
+   * Rate of the rain that the index names.
+   */
+  ENMM_INPUT_RAIN = 7,
+  /**
+   * Whether the drain acts that the index names; it is a switch in either way.
+   */
+  ENMM_INPUT_DRAIN = 8,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -429,6 +441,18 @@ enum enmm_name_kind
    * A port, in the order of the case.
    */
   ENMM_NAME_PORT = 6,
+  /**
+   * A head of water in joints, in the order of the case.
+   */
+  ENMM_NAME_HEAD = 7,
+  /**
+   * Rain on joints, in the order of the case.
+   */
+  ENMM_NAME_RAIN = 8,
+  /**
+   * A drain, in the order of the case.
+   */
+  ENMM_NAME_DRAIN = 9,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -567,6 +591,28 @@ typedef struct enmm_progress {
  * the call. It must return: no longjmp, no exception.
  */
 typedef int32_t (*enmm_progress_callback)(const struct enmm_progress *progress, void *user);
+
+/**
+ * Water at a head, in rain or at a drain, as the flow was found last.
+ */
+typedef struct enmm_inlet_state {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Water that enters joints there, less what leaves them (m2/s).
+   */
+  double inflow;
+  /**
+   * Water that leaves joints there, less what enters them (m2/s).
+   */
+  double outflow;
+  /**
+   * Rain that joints do not take, 0 at heads and drains (m2/s).
+   */
+  double run_off;
+} enmm_inlet_state;
 
 /**
  * A monitor now. Its velocity is that of half an internal step ago.
@@ -844,6 +890,22 @@ typedef struct enmm_totals {
    * Joints whose last bond has broken.
    */
   uint64_t broken_joints;
+  /**
+   * Water that has entered joints in dynamic stages, m3 per metre (m2).
+   */
+  double water_entered;
+  /**
+   * Water that has left joints in dynamic stages, m3 per metre (m2).
+   */
+  double water_left;
+  /**
+   * Largest imbalance of the flow at a node of the joints (m2/s).
+   */
+  double flow_residual;
+  /**
+   * Height of the highest outcrop from which water seeps, of the lowest joint where none does (m).
+   */
+  double seepage_height;
 } enmm_totals;
 
 /**
@@ -998,9 +1060,10 @@ typedef struct enmm_cut {
 } enmm_cut;
 
 /**
- * A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
- * last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
- * mean along it.
+ * A port now. A block fills all from its displacement to its stress; a boundary displacement, velocity and stress;
+ * joints normal_force, shear_force, slip and, in a case with `[flow]`, the water in them; a quiet boundary
+ * displacement, velocity and traction; a fixity displacement, velocity and reaction. What is not filled is 0. Motions
+ * of a block are those of its mass centroid, of a boundary the mean along it.
  */
 typedef struct enmm_port_state {
   /**
@@ -1079,6 +1142,18 @@ typedef struct enmm_port_state {
    * Force of the moved supports on the rock per metre, y (N/m).
    */
   double reaction_y;
+  /**
+   * Mean pressure of the water that flows in the joints (Pa).
+   */
+  double water_pressure;
+  /**
+   * Largest pressure of the water that flows in the joints (Pa).
+   */
+  double water_pressure_max;
+  /**
+   * Force of the water that flows in the joints on each of their faces, which pushes them apart (N/m).
+   */
+  double uplift;
 } enmm_port_state;
 
 /**
@@ -1443,17 +1518,47 @@ enmm_status enmm_set_port_velocity(struct enmm_model *model, uint32_t port, doub
 enmm_status enmm_set_port_displacement(struct enmm_model *model, uint32_t port, double ux, double uy);
 
 /**
+ * Sets the level (m, upwards, in the coordinates of the case) of a `[[head]]`, by its place in the case, from 0;
+ * enmm_find_name finds it by name.
+ *
+ * Acts where the flow in joints is found: at the start of static stages, and in dynamic stages with `flow = "steady"`
+ * on the grid of internal steps; else at the same times as enmm_set_gravity. A stage that names the head ends it.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a head that does not exist, a value that is not finite or beyond 1e9 m, or a
+ * model whose flow is held from now on.
+ */
+enmm_status enmm_set_head(struct enmm_model *model, uint32_t head, double level);
+
+/**
+ * Sets the rate (m/s, that is m3/s on each m2 in plan) of a `[[rain]]`, by its place in the case, from 0.
+ *
+ * Acts as enmm_set_head.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a rain that does not exist, a value that is not at least 0 and at most 1e-3, or a
+ * model whose flow is held from now on.
+ */
+enmm_status enmm_set_rain(struct enmm_model *model, uint32_t rain, double rate);
+
+/**
+ * Lets a `[[drain]]` act, or not where `is_active` is 0, by its place in the case, from 0. It is a switch: it acts as
+ * enmm_set_head, but never linearly.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a drain that does not exist, or a model whose flow is held from now on.
+ */
+enmm_status enmm_set_drain(struct enmm_model *model, uint32_t drain, int32_t is_active);
+
+/**
  * Makes all inputs that have been set since the last step act at once from the start of the next one, even where
  * inputs vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
  */
 enmm_status enmm_jump(struct enmm_model *model);
 
 /**
- * Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block or the
- * port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved
- * states. enmm_set_interpolation sets that of all inputs.
+ * Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block, the port,
+ * the head, the rain or the drain where it has one, `mode` a value of enmm_interpolation. Acts from the next step on,
+ * and is part of saved states. enmm_set_interpolation sets that of all inputs.
  *
- * Errors: ENMM_INVALID_ARGUMENT for another number, or a block or port that does not exist.
+ * Errors: ENMM_INVALID_ARGUMENT for another number, or an index that does not exist.
  */
 enmm_status enmm_set_input_interpolation(struct enmm_model *model, int32_t input, uint32_t index, int32_t mode);
 
@@ -1488,6 +1593,14 @@ enmm_status enmm_get_port_inputs(struct enmm_model *model,
                                  double *traction,
                                  double *pressure,
                                  double *velocity);
+
+/**
+ * Returns what is set at a head (level, m), in rain (rate, m/s) or at a drain (1 where it acts, else 0): `kind` is
+ * ENMM_NAME_HEAD, ENMM_NAME_RAIN or ENMM_NAME_DRAIN, `index` its place in the case.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another kind or a place that does not exist, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_inlet_input(struct enmm_model *model, int32_t kind, uint32_t index, double *value);
 
 /**
  * Sets how inputs vary within a communication step: a value of enmm_interpolation. Acts from the next step on, and is
@@ -1622,6 +1735,23 @@ enmm_status enmm_name(struct enmm_model *model,
                       char *out,
                       size_t capacity,
                       size_t *written);
+
+/**
+ * Returns the number of the thing of a kind, a value of enmm_name_kind, that has a name: the first one of several.
+ *
+ * Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT for another kind, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_find_name(struct enmm_model *model, int32_t kind, const char *name, uint32_t *index);
+
+/**
+ * Writes the water that enters and leaves joints at a head, in rain or at a drain: `kind` is ENMM_NAME_HEAD,
+ * ENMM_NAME_RAIN or ENMM_NAME_DRAIN, `index` its place in the case. It is that of the flow that was found last.
+ * `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for another kind, a place that does not exist or a struct_size that no version had,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_inlet_state(struct enmm_model *model, int32_t kind, uint32_t index, struct enmm_inlet_state *out);
 
 /**
  * Writes the state of a monitor, by its place among the `[[monitor]]`s of the case. `out->struct_size` must be set.

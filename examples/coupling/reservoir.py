@@ -1,13 +1,14 @@
-"""Reservoir: its level rises, stays and is drawn down fast; water in the joints of the slope follows late.
+"""Reservoir: its level rises, stays and is drawn down fast; water in the hill behind the slope follows late.
 
     python examples/coupling/reservoir.py [-o PICTURE.png]
 
-Two models are coupled. The reservoir balances inflow, outlet and the water that the moving slope displaces; a store of
-joint water follows its level with a delay, as seepage does. The slope gets the level on its face and the pressure of
-the joint water on its weak plane, part by part, and gives its displacement back. Days of a real reservoir are seconds
-here: the slope answers its loads without inertia of its own, until it slides. While the level rises the water on the
-face pushes the slope back; after the fast drawdown the joint water is left behind, and the slope slides until it has
-drained. Needs matplotlib and the package enmm.
+Two models are coupled. The reservoir balances inflow, outlet and the water that the moving slope displaces; the water
+in the hill follows its level with a delay. The slope gets both levels: that of the reservoir presses on its face and is
+the head where the weak plane crops out, that of the hill is the head of the plane behind it. Between them the water
+flows by `[flow]`, which the stage finds again as the levels change; its pressures lift the slope. The slope gives its
+displacement back. Days of a real reservoir are seconds here: the slope answers its loads without inertia of its own,
+until it slides. While the level rises the water on the face pushes the slope back; after the fast drawdown the hill is
+still full, and the slope slides until it has drained. Needs matplotlib and the package enmm.
 """
 
 import argparse
@@ -23,35 +24,48 @@ except ImportError:  # Not installed: that of this repository, with the library 
     import enmm
 
 CASE = enmm.examples()["coupled_slope"]
-WEIGHT = 1000.0 * 9.81
 STEP = 0.02
 DURATION = 10.0
 # Toe force (N/m): holds the dry slope with little to spare.
 TOE = np.array([0.515e6, 0.32e6])
-# Ends of the weak plane inside the rock, and the number of parts that get a pressure each.
-PLANE = np.array([[21.4, 10.2], [53.0866, 30.0]])
-PARTS = 8
+# Ends of the weak plane inside the rock, and the part of it that the water in the hill reaches.
+PLANE = np.array([[20.5, 9.6376], [53.0866, 30.0]])
+HILL = [[26.9, 13.6368], [53.0866, 30.0]]
+# Water flows in the weak plane alone.
+FLOW = f"""
+[flow]
+
+[[head]]
+name = "hill"
+edge = {HILL}
+level = 6.0
+"""
 
 
 def slope_model():
-    """The slope with water on its face alone and a port for each part of its weak plane."""
-    text = CASE.read_text(encoding="utf-8").replace("level = 6.0", "level = 6.0\njoints = false")
-    for k in range(PARTS):
-        a, b = (PLANE[0] + (PLANE[1] - PLANE[0]) * (k + end) / PARTS for end in (-1e-6, 1.0 + 1e-6))
-        text += f'\n[[port]]\nname = "part_{k}"\njoint = [[{a[0]}, {a[1]}], [{b[0]}, {b[1]}]]\n'
-    return enmm.Model.from_string(text)
+    """The slope with water on its face and in its weak plane, which follows both levels."""
+    text = CASE.read_text(encoding="utf-8")
+    for old, new in [
+        ("level = 6.0", "level = 6.0\njoints = false"),
+        ("[joint_law.weak]", "[joint_law.weak]\naperture = 2e-4"),
+        ("[joint_law.cross]", "[joint_law.cross]\naperture = 0.0"),
+        ('kind = "dynamic"', 'kind = "dynamic"\nflow = "steady"'),
+    ]:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return enmm.Model.from_string(text + FLOW)
 
 
 class Reservoir:
-    """Level of the reservoir and of the water in the joints (m)."""
+    """Level of the reservoir and of the water in the hill (m)."""
 
     area = 40.0
     """Surface per metre of depth (m²/m)."""
     delay = 2.5
-    """Time (s) in which joint water follows."""
+    """Time (s) in which the water in the hill follows."""
 
     def __init__(self):
-        self.level, self.joints, self.time = 6.0, 6.0, 0.0
+        self.level, self.hill, self.time = 6.0, 6.0, 0.0
 
     @staticmethod
     def flow(t):
@@ -63,15 +77,8 @@ class Reservoir:
     def advance(self, h, displaced):
         """Goes on by h (s) while the slope displaces so much water (m³/m)."""
         self.level += (self.flow(self.time + 0.5 * h) * h + displaced) / self.area
-        self.joints += (self.level - self.joints) * -np.expm1(-h / self.delay)
+        self.hill += (self.level - self.hill) * -np.expm1(-h / self.delay)
         self.time += h
-
-
-def joint_pressures(level):
-    """Mean pressure (Pa) of still water with this level on each part of the plane."""
-    heights = np.linspace(PLANE[0, 1], PLANE[1, 1], 20 * PARTS + 1)
-    middles = 0.5 * (heights[1:] + heights[:-1])
-    return WEIGHT * np.clip(level - middles, 0.0, None).reshape(PARTS, -1).mean(axis=1)
 
 
 def run():
@@ -85,16 +92,16 @@ def run():
         start = np.array(slope.ports["toe"].state()[:2])
         pushed = 0.0
         for k in range(round(DURATION / STEP)):
-            moved = np.array(slope.ports["toe"].state()[:2]) - start
-            rows.append((k * STEP, reservoir.level, reservoir.joints, np.hypot(*moved), slope.totals().velocity_max))
+            moved, plane = np.array(slope.ports["toe"].state()[:2]) - start, slope.ports["plane"].state()
+            now = reservoir.level, reservoir.hill, np.hypot(*moved), slope.totals().velocity_max, plane.uplift
+            rows.append((k * STEP, *now))
             # The toe block of some 4 m height pushes water away while it moves out.
             wet = np.clip(reservoir.level - 10.2, 0.0, 4.0)
             out = -moved[0] * wet
             reservoir.advance(STEP, out - pushed)
             pushed = out
             slope.set_water_level(reservoir.level)
-            for part, pressure in enumerate(joint_pressures(reservoir.joints)):
-                slope.ports[f"part_{part}"].set_pressure(pressure)
+            slope.set_head("hill", reservoir.hill)
             slope.do_step(k * STEP, STEP)
         after = [slope.polygon(k) for k in range(slope.block_count)]
         events = slope.events()
@@ -108,13 +115,15 @@ def draw(result, path):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    t, level, joints, moved, speed = result["rows"].T
+    t, level, hill, moved, speed, uplift = result["rows"].T
     figure = pyplot.figure(figsize=(11, 6.5), layout="constrained")
-    axes = figure.subplot_mosaic([["l", "s"], ["u", "s"], ["v", "s"]], width_ratios=[1, 1.1])
+    axes = figure.subplot_mosaic([["l", "s"], ["p", "s"], ["u", "s"], ["v", "s"]], width_ratios=[1, 1.1])
     axes["l"].plot(t, level, color="#1f5fa8", lw=2, label="reservoir")
-    axes["l"].plot(t, joints, color="#c0392b", lw=1.5, ls="--", label="water in the joints")
+    axes["l"].plot(t, hill, color="#c0392b", lw=1.5, ls="--", label="water in the hill")
     axes["l"].set_ylabel("level [m]")
     axes["l"].legend(frameon=False)
+    axes["p"].plot(t, 1e-6 * uplift, color="#c0392b")
+    axes["p"].set_ylabel("uplift of the\nplane [MN/m]")
     axes["u"].plot(t, 1000.0 * moved, color="black")
     axes["u"].set_ylabel("toe displacement [mm]")
     axes["v"].semilogy(t, np.maximum(speed, 1e-8), color="black", lw=0.8)
@@ -145,7 +154,8 @@ def main():
     rows = result["rows"]
     for t in (4.0, 5.4, 6.6, 9.98):
         row = rows[np.argmin(np.abs(rows[:, 0] - t))]
-        print(f"t {row[0]:5.2f} s  level {row[1]:6.2f} m  joints {row[2]:6.2f} m  toe {1000 * row[3]:8.3f} mm")
+        levels = f"level {row[1]:6.2f} m  hill {row[2]:6.2f} m  uplift {1e-6 * row[5]:6.3f} MN/m"
+        print(f"t {row[0]:5.2f} s  {levels}  toe {1000 * row[3]:8.3f} mm")
     print(f"{len(result['events'])} events; wrote {arguments.o}")
 
 

@@ -66,6 +66,7 @@ using Contact = enmm_contact;
 using Energies = enmm_energies;
 using Event = enmm_event;
 using Cut = enmm_cut;
+using InletState = enmm_inlet_state;
 using MonitorState = enmm_monitor_state;
 using PortState = enmm_port_state;
 using Progress = enmm_progress;
@@ -341,7 +342,19 @@ public:
         detail::check(enmm_set_port_displacement(handle_, port, u.x, u.y));
     }
 
-    /** How one input varies within a step; `of` is the block or the port where it has one. */
+    /** Level of a head, by its place in the case (m); it acts where the flow in joints is found. */
+    void set_head(std::uint32_t head, double level) { detail::check(enmm_set_head(handle_, head, level)); }
+
+    /** Rate of rain on each square metre in plan (m/s). */
+    void set_rain(std::uint32_t rain, double rate) { detail::check(enmm_set_rain(handle_, rain, rate)); }
+
+    /** Whether a drain acts. */
+    void set_drain(std::uint32_t drain, bool is_active)
+    {
+        detail::check(enmm_set_drain(handle_, drain, is_active ? 1 : 0));
+    }
+
+    /** How one input varies within a step; `of` is the block, port, head, rain or drain where it has one. */
     void set_interpolation_of(enmm_input input, enmm_interpolation mode, std::uint32_t of = 0)
     {
         detail::check(enmm_set_input_interpolation(handle_, input, of, mode));
@@ -500,6 +513,30 @@ public:
         return detail::text([&](char *out, std::size_t capacity, std::size_t *written) {
             return enmm_name(handle_, kind, index, out, capacity, written);
         });
+    }
+
+    /** Number of the thing of a kind with a name. */
+    std::uint32_t find_name(enmm_name_kind kind, const std::string &name) const
+    {
+        std::uint32_t index = 0;
+        detail::check(enmm_find_name(handle_, kind, name.c_str(), &index));
+        return index;
+    }
+
+    /** Water at a head, in rain or at a drain. */
+    InletState inlet_state(enmm_name_kind kind, std::uint32_t index) const
+    {
+        auto state = detail::sized<InletState>();
+        detail::check(enmm_get_inlet_state(handle_, kind, index, &state));
+        return state;
+    }
+
+    /** Level of a head (m), rate of rain (m/s), or 1 for a drain that acts, as it is set. */
+    double inlet_input(enmm_name_kind kind, std::uint32_t index) const
+    {
+        double value = 0;
+        detail::check(enmm_get_inlet_input(handle_, kind, index, &value));
+        return value;
     }
 
     MonitorState monitor_state(std::uint32_t monitor) const

@@ -11,8 +11,8 @@ use crate::cover::BlockId;
 use crate::geometry::Vector;
 use crate::state::{Input, Inputs, PortKind};
 
-use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, VALUE_MAX, VELOCITY_MAX};
-use super::{Cosimulation, CosimulationError};
+use super::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, RAIN_MAX, VALUE_MAX, VELOCITY_MAX};
+use super::{Cosimulation, CosimulationError, Named};
 
 impl Cosimulation {
     /// Sets gravity (m/s², y up: the standard is (0, −9.81)).
@@ -50,6 +50,59 @@ impl Cosimulation {
         }
         self.set(|inputs| replace(&mut inputs.water_level, level));
         Ok(())
+    }
+
+    /// Sets the level (m) of a `[[head]]`, by its place in the case. It acts wherever the flow in the joints is found:
+    /// at the start of static stages, and in dynamic ones with `flow = "steady"`.
+    ///
+    /// # Errors
+    /// A value that is not finite or too large, a head that does not exist, or flow that is held from now on.
+    pub fn set_head(&mut self, head: usize, level: f64) -> Result<(), CosimulationError> {
+        self.check_named(Named::Head, head)?;
+        number(&format_args!("level of head {:?}", self.case().heads[head].name), level, LEVEL_MAX, "m")?;
+        self.check_follows("head")?;
+        self.set(|inputs| replace(&mut inputs.head[head], level));
+        Ok(())
+    }
+
+    /// Sets the rate (m/s, that is m³/s on each m² in plan) of a `[[rain]]`, by its place in the case. It acts as
+    /// [`Cosimulation::set_head`] does.
+    ///
+    /// # Errors
+    /// A value that is negative or too large, a rain that does not exist, or flow that is held from now on.
+    pub fn set_rain(&mut self, rain: usize, rate: f64) -> Result<(), CosimulationError> {
+        self.check_named(Named::Rain, rain)?;
+        if !(0.0..=RAIN_MAX).contains(&rate) {
+            let name = format!("rate of rain {:?}", self.case().rains[rain].name);
+            let limit = format!("at least 0 and at most {RAIN_MAX:e} m/s");
+            let value = format!("{} m/s", Plain(rate));
+            return Err(CosimulationError::value(name, value, &limit, "10 mm in an hour are 2.8e-6 m/s"));
+        }
+        self.check_follows("rain")?;
+        self.set(|inputs| replace(&mut inputs.rain[rain], rate));
+        Ok(())
+    }
+
+    /// Lets a `[[drain]]` act or not, by its place in the case. It is a switch, which is not interpolated, and acts as
+    /// [`Cosimulation::set_head`] does.
+    ///
+    /// # Errors
+    /// A drain that does not exist, or flow that is held from now on.
+    pub fn set_drain(&mut self, drain: usize, is_active: bool) -> Result<(), CosimulationError> {
+        self.check_named(Named::Drain, drain)?;
+        self.check_follows("drain")?;
+        self.set(|inputs| replace(&mut inputs.drain[drain], is_active));
+        Ok(())
+    }
+
+    /// Refuses inputs of a flow that is held from now on.
+    fn check_follows(&self, name: &str) -> Result<(), CosimulationError> {
+        if self.simulation.follows_flow() {
+            return Ok(());
+        }
+        let remedy = "add `flow = \"steady\"` to the dynamic stage, or set it before the start";
+        let stage = self.simulation.stage().name.as_str();
+        Err(CosimulationError::value(name, format!("set in stage {stage:?}"), "set where the flow is found", remedy))
     }
 
     /// Sets the factor by which cohesion, tan φ and tensile strength of all joints, and of rock that yields or breaks,
@@ -192,7 +245,10 @@ impl Cosimulation {
                 PortKind::Block => Input::Block(self.port_block(port as usize)?),
                 _ => input,
             }),
-            _ => Ok(input),
+            Input::Head(head) => self.check_named(Named::Head, head as usize).map(|()| input),
+            Input::Rain(rain) => self.check_named(Named::Rain, rain as usize).map(|()| input),
+            Input::Drain(drain) => self.check_named(Named::Drain, drain as usize).map(|()| input),
+            Input::Gravity | Input::BaseAcceleration | Input::WaterLevel | Input::StrengthFactor => Ok(input),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Names of what a model has by number, and the state of monitors.
 
 use crate::model::MonitorState;
+use crate::model::case::key::list;
 
 use super::{Cosimulation, CosimulationError};
 
@@ -21,11 +22,17 @@ pub enum Named {
     Monitor,
     /// A port, in the order of the case.
     Port,
+    /// A head of water in joints, in the order of the case.
+    Head,
+    /// Rain on joints, in the order of the case.
+    Rain,
+    /// A drain, in the order of the case.
+    Drain,
 }
 
 impl Named {
     /// The word for several of them.
-    fn plural(self) -> &'static str {
+    pub(super) fn plural(self) -> &'static str {
         match self {
             Self::Joint => "joint traces",
             Self::Law => "joint laws",
@@ -34,9 +41,15 @@ impl Named {
             Self::Block => "blocks",
             Self::Monitor => "monitors",
             Self::Port => "ports",
+            Self::Head => "heads",
+            Self::Rain => "rains",
+            Self::Drain => "drains",
         }
     }
 }
+
+/// Names of a kind that the error of a wrong one tells.
+const NAMES_TOLD: usize = 20;
 
 impl Cosimulation {
     /// Number of things of a kind. It never changes.
@@ -50,6 +63,9 @@ impl Cosimulation {
             Named::Block => model.covers.block_count(),
             Named::Monitor => case.monitors.len(),
             Named::Port => model.ports.len(),
+            Named::Head => case.heads.len(),
+            Named::Rain => case.rains.len(),
+            Named::Drain => case.drains.len(),
         }
     }
 
@@ -72,6 +88,23 @@ impl Cosimulation {
             Named::Block => format!("block {index}"),
             Named::Monitor => case.monitors[index].name.clone(),
             Named::Port => self.ports()[index].name.clone(),
+            Named::Head => case.heads[index].name.clone(),
+            Named::Rain => case.rains[index].name.clone(),
+            Named::Drain => case.drains[index].name.clone(),
+        })
+    }
+
+    /// Number of the thing of a kind that has a name, from 0: the first one of several.
+    ///
+    /// # Errors
+    /// None has it.
+    pub fn find_name(&self, kind: Named, name: &str) -> Result<usize, CosimulationError> {
+        let has = |index: &usize| self.name(kind, *index).is_ok_and(|own| own == name);
+        (0..self.name_count(kind)).find(has).ok_or_else(|| {
+            let names = (0..self.name_count(kind)).filter_map(|index| self.name(kind, index).ok());
+            let names: Vec<String> = names.take(NAMES_TOLD).collect();
+            let limit = format!("that of one of the {}: {}", kind.plural(), list(names.iter().map(String::as_str)));
+            CosimulationError::value("name", format!("{name:?}"), &limit, "name one of them")
         })
     }
 
@@ -84,7 +117,7 @@ impl Cosimulation {
         Ok(self.simulation.monitor(monitor))
     }
 
-    fn check_named(&self, kind: Named, index: usize) -> Result<(), CosimulationError> {
+    pub(super) fn check_named(&self, kind: Named, index: usize) -> Result<(), CosimulationError> {
         let count = self.name_count(kind);
         if index < count {
             return Ok(());

@@ -3,13 +3,13 @@
 use crate::contact::{ContactHistory, ContactState, Support, VertexEdge};
 use crate::cover::{self, BlockId};
 use crate::geometry::Vector;
-use crate::model::{ContactView, Simulation};
+use crate::model::{ContactView, InletState, JointFlow, JointWater, Simulation};
 use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
 
-use super::{Cosimulation, Forces};
+use super::{Cosimulation, CosimulationError, Forces, Named};
 
 /// A port as hosts see it. A block fills all up to the stress; a boundary displacement, velocity and stress; joints
-/// normal and shear force and slip; a quiet boundary displacement, velocity and traction; a fixity displacement,
+/// normal and shear force, slip and the water that flows in them; a quiet boundary displacement, velocity and traction; a fixity displacement,
 /// velocity and reaction.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PortState {
@@ -35,10 +35,12 @@ pub struct PortState {
     pub traction: Vector,
     /// Force of the supports of a fixity on the rock (N/m).
     pub reaction: Vector,
+    /// Water that flows in the joints.
+    pub water: JointWater,
 }
 
 /// Numbers of a port as outputs show them: the structures of C and Python in this order, and the FMUs.
-pub const PORT_QUANTITIES: [Quantity<PortState>; 18] = [
+pub const PORT_QUANTITIES: [Quantity<PortState>; 21] = [
     Quantity::plain("displacement_x", "m", "Displacement, x", |port| port.displacement.x),
     Quantity::plain("displacement_y", "m", "Displacement, y up", |port| port.displacement.y),
     Quantity::plain("velocity_x", "m/s", "Velocity, x", |port| port.velocity.x),
@@ -72,6 +74,18 @@ pub const PORT_QUANTITIES: [Quantity<PortState>; 18] = [
     Quantity::plain("reaction_y", "N/m", "Force of the moved supports on the rock per metre, y", |port| {
         port.reaction.y
     }),
+    Quantity::plain("water_pressure", "Pa", "Mean pressure of the water that flows in the joints", |port| {
+        port.water.pressure
+    }),
+    Quantity::plain("water_pressure_max", "Pa", "Largest pressure of the water that flows in the joints", |port| {
+        port.water.pressure_max
+    }),
+    Quantity::plain(
+        "uplift",
+        "N/m",
+        "Force of the water that flows in the joints on each of their faces, which pushes them apart",
+        |port| port.water.uplift,
+    ),
 ];
 
 /// Sums and extremes over the whole model.
@@ -105,6 +119,8 @@ pub struct Totals {
     pub broken_length: f64,
     /// Joints whose last bond has broken.
     pub broken_joints: u64,
+    /// Water that flows in joints.
+    pub flow: JointFlow,
 }
 
 /// Contacts by their state.
@@ -120,7 +136,7 @@ pub struct ContactCounts {
 
 /// Sums and extremes as outputs show them, but for the energies: the structures of C and Python in this order, and the
 /// FMUs. New ones go to the end.
-pub const TOTALS: [Quantity<Totals>; 15] = [
+pub const TOTALS: [Quantity<Totals>; 19] = [
     Quantity::plain("displacement_max", "m", "Largest displacement of a cover", |totals| totals.displacement_max),
     Quantity::plain("velocity_max", "m/s", "Largest velocity of a cover", |totals| totals.velocity_max),
     Quantity::plain("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
@@ -153,6 +169,21 @@ pub const TOTALS: [Quantity<Totals>; 15] = [
         totals.broken_length
     }),
     Quantity::count(["broken_joints"; 2], "Joints whose last bond has broken", |totals| totals.broken_joints as f64),
+    Quantity::plain("water_entered", "m2", "Water that has entered joints in dynamic stages, m3 per metre", |totals| {
+        totals.flow.passed[0]
+    }),
+    Quantity::plain("water_left", "m2", "Water that has left joints in dynamic stages, m3 per metre", |totals| {
+        totals.flow.passed[1]
+    }),
+    Quantity::plain("flow_residual", "m2/s", "Largest imbalance of the flow at a node of the joints", |totals| {
+        totals.flow.residual
+    }),
+    Quantity::plain(
+        "seepage_height",
+        "m",
+        "Height of the highest outcrop from which water seeps, of the lowest joint where none does",
+        |totals| totals.flow.seepage_height,
+    ),
 ];
 
 impl Cosimulation {
@@ -255,7 +286,24 @@ impl Cosimulation {
             broken_joints: u64::from(events(EventKind::Broken)),
             overlap_max: state.events.overlap_max,
             overlapping_pairs: state.events.overlapped.len() as u64,
+            flow: self.simulation.joint_flow(),
         }
+    }
+
+    /// Water at a head, in rain or at a drain, by kind and place in the case, as the flow was found last.
+    ///
+    /// # Errors
+    /// There is none of that number, or water does not enter or leave at things of that kind.
+    pub fn inlet(&self, kind: Named, index: usize) -> Result<InletState, CosimulationError> {
+        self.check_named(kind, index)?;
+        let (heads, rains) = (self.name_count(Named::Head), self.name_count(Named::Rain));
+        let before = match kind {
+            Named::Head => 0,
+            Named::Rain => heads,
+            Named::Drain => heads + rains,
+            _ => return Err(CosimulationError::value("kind", kind.plural(), "heads, rains or drains", "name one")),
+        };
+        Ok(self.simulation.inlet(before + index))
     }
 
     /// See [`Simulation::contact_views`].
@@ -339,7 +387,8 @@ impl Cosimulation {
     fn joint_port(&self, index: usize) -> PortState {
         let (port, state) = (&self.ports()[index], self.simulation.state());
         let boundary = &self.simulation.model().boundary;
-        let mut sum = PortState { slip: state.events.port_slip[index], ..PortState::default() };
+        let water = self.simulation.joint_water(&port.edges);
+        let mut sum = PortState { slip: state.events.port_slip[index], water, ..PortState::default() };
         for contact in state.contacts.iter().filter(|contact| port.has(contact, boundary)) {
             sum.normal_force += contact.normal_force;
             sum.shear_force += contact.shear_force.abs();

@@ -19,11 +19,15 @@ pub enum Inlet {
     Air,
 }
 
-/// Surroundings of a net at the start of a stage.
+/// Surroundings of a net.
 #[derive(Debug, Clone, Copy)]
 pub struct Outside<'a> {
-    /// Stage, for the levels of heads.
-    pub stage: usize,
+    /// Level of each head (m).
+    pub heads: &'a [f64],
+    /// Rate of each rain (m/s).
+    pub rains: &'a [f64],
+    /// Whether each drain acts.
+    pub drains: &'a [bool],
     /// Nodes at blocks that have been dug out, and what has come there.
     pub dug: &'a [Outcrop],
     /// Depth (m) below the surface of the reservoir at each node; negative above it, or where there is none.
@@ -31,6 +35,9 @@ pub struct Outside<'a> {
     /// Whether joints conduct at each node.
     pub conducts: &'a [bool],
 }
+
+/// Share of the flow through a net below which what leaves at an outcrop is round-off.
+const SEEPS: f64 = 1e-9;
 
 /// Whether water can leave or enter a piece of net at a node with a condition; pumps take what others give.
 pub fn is_open(condition: &Condition) -> bool {
@@ -57,8 +64,7 @@ impl FlowNet {
             }
         };
         let mut found: Vec<_> = (0..self.places.len()).map(at).collect();
-        for (k, held) in self.heads.iter().enumerate() {
-            let head = held.levels[outside.stage];
+        for (k, (held, &head)) in self.heads.iter().zip(outside.heads).enumerate() {
             for &node in &held.nodes {
                 let condition = &mut found[node as usize];
                 if head >= self.places[node as usize].y {
@@ -68,14 +74,14 @@ impl FlowNet {
                 }
             }
         }
-        self.add_rain(outside.stage, &mut found);
+        self.add_rain(outside.rains, &mut found);
         self.add_drains(outside, &mut found);
         found
     }
 
     /// Drains that act, where joints within the rock cross them.
-    fn add_drains(&self, Outside { stage, conducts, .. }: Outside, found: &mut [(Condition, Option<Inlet>)]) {
-        for (k, drain) in self.drains.iter().enumerate().filter(|(_, drain)| drain.active[stage]) {
+    fn add_drains(&self, Outside { drains, conducts, .. }: Outside, found: &mut [(Condition, Option<Inlet>)]) {
+        for (k, drain) in self.drains.iter().enumerate().filter(|(k, _)| drains[*k]) {
             let is_free = |&&node: &&u32| found[node as usize].1.is_none() && conducts[node as usize];
             let nodes: Vec<u32> = drain.nodes.iter().filter(is_free).copied().collect();
             for &node in &nodes {
@@ -90,16 +96,28 @@ impl FlowNet {
     }
 
     /// Rain on outcrops that are open to the air.
-    fn add_rain(&self, stage: usize, found: &mut [(Condition, Option<Inlet>)]) {
-        for (k, rain) in self.rains.iter().enumerate() {
+    fn add_rain(&self, rates: &[f64], found: &mut [(Condition, Option<Inlet>)]) {
+        for (k, (rain, rate)) in self.rains.iter().zip(rates).enumerate() {
             for &(node, width) in &rain.outcrops {
                 let condition = &mut found[node as usize];
                 if condition.0 == Condition::Air {
-                    let rate = rain.rates[stage] * width;
+                    let rate = rate * width;
                     *condition = (Condition::Rain { rate }, Some(Inlet::Rain(k as u32)));
                 }
             }
         }
+    }
+
+    /// Height (m) of the highest outcrop from which water seeps, more than the round-off of flows; none where none
+    /// does.
+    pub fn seeps(&self, conditions: &[(Condition, Option<Inlet>)], flow: &Flow) -> Option<f64> {
+        let is_outcrop = |(condition, inlet): &(Condition, Option<Inlet>)| {
+            let is_drain = matches!(inlet, Some(Inlet::Drain(_)));
+            matches!(condition, Condition::Air | Condition::Rain { .. }) && !is_drain
+        };
+        let nodes = conditions.iter().zip(&flow.inflow).zip(&self.places);
+        let seeping = nodes.filter(|((at, inflow), _)| is_outcrop(at) && -**inflow > SEEPS * flow.through_flow);
+        seeping.map(|(_, place)| place.y).reduce(f64::max)
     }
 
     /// Number of inlets.

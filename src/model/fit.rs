@@ -15,15 +15,18 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
     Counters, Course, Drive, Event, EventKind, Events, FlowBalance, FrictionDelay, Inputs, Ledger, Model, MostRest,
-    Seepage, State, WorstSection,
+    Round, Rounds, Seepage, StageWater, State, Surroundings, WorstSection,
 };
 
+use crate::flow::DEPTH;
 use crate::step::has_bonds;
+
+use super::openings::ROUNDS_MAX;
 
 use super::Simulation;
 use super::assemble::Built;
 use super::case::StageKind;
-use super::case::limits::FACTOR_MAX;
+use super::case::limits::{FACTOR_MAX, RAIN_MAX};
 
 /// Value of a state that the model cannot have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -317,21 +320,64 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
         (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
     };
-    let Seepage { unknowns, conducts, flooded, balances } = seepage;
+    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed, time, rounds } = seepage;
+    let Surroundings { level, weight, heads, rains, drains } = surroundings;
+    check_sources(model, "seepage.surroundings", (heads, rains, drains))?;
+    number("seepage.surroundings.level", *level, LENGTH)?;
+    between("seepage.surroundings.weight", *weight, 0.0, FORCE)?;
+    passed.iter().try_for_each(|volume| between("seepage.passed", *volume, 0.0, FORCE))?;
+    length("seepage.apertures", apertures.len(), net.pieces.len())?;
+    let within = |aperture: f64| aperture == 0.0 || (net.range[0]..=net.range[1]).contains(&aperture);
+    for (k, own) in apertures.iter().enumerate() {
+        if !own.iter().all(|aperture| within(*aperture)) || (own[0] > 0.0) != (own[1] > 0.0) {
+            let limit = format!("two of 0 or two within {:?} m", net.range);
+            return unfit(format!("seepage.apertures[{k}]"), format!("{own:?}"), limit);
+        }
+    }
     length("seepage.unknowns", unknowns.len(), net.places.len())?;
     length("seepage.conducts", conducts.len(), net.pieces.len())?;
     length("seepage.flooded", flooded.len(), model.covers.block_count())?;
     for (k, unknown) in unknowns.iter().enumerate() {
         between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
     }
+    between("seepage.time", *time, 0.0, f64::MAX)?;
+    check_rounds(rounds, apertures)?;
     in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
-    for (k, FlowBalance { stage: of, sums, residual }) in balances.iter().enumerate() {
+    for (k, FlowBalance { stage: of, sums, residual, seeps, water, rounds }) in balances.iter().enumerate() {
         at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
         length("seepage.balances.sums", sums.len(), net.inlet_count())?;
         numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
         number("seepage.balances.residual", *residual, RATE)?;
+        seeps.map_or(Ok(()), |height| number("seepage.balances.seeps", height, LENGTH))?;
+        if let Some(Rounds { count, asked, piece, is_over: _, agree: _ }) = rounds {
+            at_most("seepage.balances.rounds.count", (*count).into(), ROUNDS_MAX.into())?;
+            at_most("seepage.balances.rounds.piece", (*piece).into(), net.pieces.len() as u64 - 1)?;
+            between("seepage.balances.rounds.asked", *asked, 0.0, LENGTH)?;
+        }
+        check_stage_water(water.as_ref(), net.inlet_count())?;
     }
     Ok(())
+}
+
+/// Checks the rounds of a stage whose apertures follow openings.
+fn check_rounds(rounds: &[Round], apertures: &[[f64; 2]]) -> Fit {
+    at_most("the number of seepage.rounds", rounds.len() as u64, DEPTH as u64 + 1)?;
+    for Round { logs, asked } in rounds {
+        for (what, list) in [("seepage.rounds.logs", logs), ("seepage.rounds.asked", asked)] {
+            length(what, list.len(), apertures.len())?;
+            list.as_flattened().iter().try_for_each(|value| between(what, *value, -100.0, 100.0))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_stage_water(water: Option<&StageWater>, inlets: usize) -> Fit {
+    let Some(StageWater { time, sums, stored, drains }) = water else { return Ok(()) };
+    between("seepage.balances.water.time", *time, 0.0, f64::MAX)?;
+    length("seepage.balances.water.sums", sums.len(), inlets)?;
+    numbers("seepage.balances.water.sums", sums.as_flattened(), f64::MAX)?;
+    number("seepage.balances.water.stored", *stored, f64::MAX)?;
+    number("seepage.balances.water.drains", *drains, RATE)
 }
 
 fn check_drive(model: &Model, drive: &Drive) -> Fit {
@@ -440,7 +486,11 @@ fn check_inputs(model: &Model, of: &str, inputs: &Inputs) -> Fit {
         port_traction,
         port_pressure,
         port_velocity,
+        head,
+        rain,
+        drain,
     } = inputs;
+    check_sources(model, of, (head, rain, drain))?;
     length(format_args!("{of}.port_velocity"), port_velocity.len(), ports)?;
     vectors(&format!("{of}.port_velocity"), port_velocity, RATE)?;
     vector(format_args!("{of}.gravity"), *gravity, RATE)?;
@@ -456,6 +506,16 @@ fn check_inputs(model: &Model, of: &str, inputs: &Inputs) -> Fit {
         numbers(&format!("{of}.{field}"), list, FORCE)?;
     }
     Ok(())
+}
+
+/// Checks levels of heads, rates of rain, and how many drains there are.
+fn check_sources(model: &Model, of: &str, (heads, rains, drains): (&[f64], &[f64], &[bool])) -> Fit {
+    let own = model.flow.as_ref().map_or([0; 3], |net| [net.heads.len(), net.rains.len(), net.drains.len()]);
+    length(format_args!("{of}.head"), heads.len(), own[0])?;
+    length(format_args!("{of}.rain"), rains.len(), own[1])?;
+    length(format_args!("{of}.drain"), drains.len(), own[2])?;
+    numbers(&format!("{of}.head"), heads, LENGTH)?;
+    rains.iter().try_for_each(|rate| between(format_args!("{of}.rain"), *rate, 0.0, RAIN_MAX))
 }
 
 fn check_events(model: &Model, events: &Events) -> Fit {

@@ -1,29 +1,79 @@
-//! Steady flow in the joints at the start of a static stage, and what is known of it.
+//! Flow in the joints at the start of a static stage and in the course of a dynamic one, and what is known of it.
 
-use enmm_seepage::{Condition, Failure, Unsolved};
+use enmm_seepage::{Condition, Failure, Refused, Unsolved};
 use serde::Serialize;
 
 use crate::contact::EdgeId;
 use crate::cover::BlockId;
 use crate::flow::{Drain, FlowNet, FlowPiece, Inlet, Outcrop, Outside, is_open};
 use crate::geometry::{Point, Vector};
-use crate::state::{FlowBalance, Model, Seepage, State};
+use crate::state::{FlowBalance, Model, Seepage, State, Surroundings};
+use crate::step::{self, Regime, StepError};
 
 use super::Simulation;
 use super::bonds::{BondState, bond_states};
-use super::case::Invalid;
+use super::case::{Invalid, Stage, StageKind};
 
 impl Simulation {
-    /// Finds the steady flow in the joints as they are at the start of a stage, if water flows in them.
+    /// Finds the flow in the joints as they are at the start of a stage, if water flows in them: the steady one, or
+    /// that at the end of the time which the stage gives it.
     ///
     /// # Errors
     /// No flow has been found.
     pub(super) fn find_flow(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         let (model, state) = (&self.built.model, &self.state);
         let Some(net) = &model.flow else { return Ok(()) };
-        let seen = Seen { model, state, net, stage, start };
-        self.state.seepage = Some(seen.steady().map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
+        let seen = Seen { model, state, net, stage, start, way: None };
+        let found = match (self.case.stages[stage].flow_time(), &state.seepage) {
+            (Some(time), Some(before)) => seen.over(time, before),
+            _ => seen.steady(seen.opened(), None),
+        };
+        self.state.seepage = Some(found.map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
         Ok(())
+    }
+
+    /// Finds the steady flow again before an internal step where it is due, and something around the net has changed:
+    /// before the first step of a static stage, whose inputs a host may have set, and on the grid of a dynamic stage
+    /// that follows them. The apertures are those of the start of the last static stage.
+    ///
+    /// # Errors
+    /// No flow has been found.
+    pub(super) fn follow_flow(&mut self) -> Result<(), StepError> {
+        let (model, state) = (&self.built.model, &self.state);
+        let (Some(net), Some(seepage)) = (&model.flow, &state.seepage) else { return Ok(()) };
+        let stage = &self.case.stages[state.stage as usize];
+        let is_due = match stage.flow_steps() {
+            Some(every) => state.stage_step.is_multiple_of(every),
+            None if stage.flow_time().is_some() => false,
+            None => state.stage_step == 0 && (stage.kind == StageKind::Static || state.stage == 0),
+        };
+        if !is_due || state.part != 0.0 {
+            return Ok(());
+        }
+        let time = self.time();
+        let seen = Seen { model, state, net, stage: state.stage as usize, start: time, way: None };
+        let is_found = seepage.balances.last().is_some_and(|balance| balance.stage == state.stage);
+        if is_found && seen.are_as(&seepage.surroundings) {
+            return Ok(());
+        }
+        let start = stage.flow_steps().map(|_| &seepage.unknowns[..]);
+        let found = seen.steady(seepage.apertures.clone(), start);
+        self.state.seepage = Some(found.map_err(|failure| seen.failed(failure))?);
+        Ok(())
+    }
+
+    /// Lets water flow for a time (s) of a dynamic stage.
+    pub(super) fn pass_water(&mut self, dt: f64) {
+        let is_dynamic = matches!(self.regime, Regime::Dynamic { .. });
+        self.state.seepage.iter_mut().filter(|_| is_dynamic).for_each(|seepage| seepage.pass(dt));
+    }
+
+    /// Whether what hosts set of heads, rain and drains has an effect now or in a later stage.
+    pub fn follows_flow(&self) -> bool {
+        let (now, begun) = (self.state.stage as usize, self.state.stage_step > 0);
+        let finds = |stage: &Stage| stage.flow_steps().is_some() || stage.kind == StageKind::Static;
+        let (own, later) = (&self.case.stages[now], &self.case.stages[now + 1..]);
+        own.flow_steps().is_some() || !begun && (finds(own) || now == 0) || later.iter().any(finds)
     }
 }
 
@@ -60,7 +110,8 @@ impl Simulation {
         let Some(balance) = seepage.balances.last().filter(|balance| balance.stage as usize == stage) else {
             return Vec::new();
         };
-        let active = net.drains.iter().enumerate().filter(|(_, drain)| drain.active[stage]);
+        let acting = &seepage.surroundings.drains;
+        let active = net.drains.iter().enumerate().filter(|(k, _)| acting[*k]);
         let doubt = |(k, drain): (usize, &Drain)| {
             let [enters, leaves, _] = balance.sums[net.heads.len() + net.rains.len() + k];
             let name = &drain.name;
@@ -83,7 +134,8 @@ impl Simulation {
     pub fn flow_survey(&self) -> Option<FlowSurvey> {
         let (model, state) = (&self.built.model, &self.state);
         let net = model.flow.as_ref()?;
-        Some(Seen { model, state, net, stage: state.stage as usize, start: self.time() }.survey())
+        let (stage, start) = (state.stage as usize, self.time());
+        Some(Seen { model, state, net, stage, start, way: None }.survey())
     }
 }
 
@@ -100,30 +152,108 @@ fn told(net: &FlowNet, stage: &str, failure: &Failure) -> Invalid {
 }
 
 /// A model at the start of a stage, whose changes have been made.
-struct Seen<'a> {
-    model: &'a Model,
-    state: &'a State,
-    net: &'a FlowNet,
-    stage: usize,
-    start: f64,
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    pub net: &'a FlowNet,
+    pub stage: usize,
+    pub start: f64,
+    /// The flow of before, and the share of the way from its levels, heads and rain to those of the stage; none at
+    /// those of the stage.
+    pub way: Option<(&'a Seepage, f64)>,
 }
 
 impl Seen<'_> {
-    fn steady(&self) -> Result<Seepage, Failure> {
-        let conductance = self.conductance();
+    /// Steady flow through pieces with apertures (m) at their nodes, from unknowns (m) of before or from a full net.
+    pub fn steady(&self, apertures: Vec<[f64; 2]>, start: Option<&[f64]>) -> Result<Seepage, Failure> {
+        let conductance = self.conductance(&apertures);
         let flooded = self.flooded();
         let conditions = self.conditions(&flooded, &conductance);
         let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
-        let flow = self.net.net.steady(&conductance, &at_nodes)?;
-        let (stage, sums) = (self.stage as u32, self.net.sums(&conditions, &flow));
-        let mut balances = self.state.seepage.as_ref().map_or_else(Vec::new, |seepage| seepage.balances.clone());
-        balances.push(FlowBalance { stage, sums, residual: flow.residual });
-        let conducts = conductance.iter().map(|g| *g > 0.0).collect();
-        Ok(Seepage { unknowns: flow.u, conducts, flooded, balances })
+        let net = &self.net.net;
+        let full = || net.steady(&conductance, &at_nodes);
+        let flow = start.map_or_else(full, |u| net.steady_from(&conductance, &at_nodes, u).or_else(|_| full()))?;
+        let (stage, residual) = (self.stage as u32, flow.residual);
+        let (sums, seeps) = (self.net.sums(&conditions, &flow), self.net.seeps(&conditions, &flow));
+        let before = self.state.seepage.as_ref();
+        let earlier = before.iter().flat_map(|seepage| &seepage.balances).filter(|balance| balance.stage != stage);
+        let own = FlowBalance { stage, sums, residual, seeps, water: None, rounds: None };
+        Ok(Seepage {
+            unknowns: flow.u,
+            conducts: conductance.iter().map(|g| *g > 0.0).collect(),
+            apertures,
+            flooded,
+            surroundings: self.surroundings(),
+            balances: earlier.cloned().chain([own]).collect(),
+            passed: before.map_or([0.0; 2], |seepage| seepage.passed),
+            time: before.map_or(0.0, |seepage| seepage.time),
+            rounds: Vec::new(),
+        })
+    }
+
+    /// Unit weight of the water (N/m³).
+    pub fn weight(&self) -> f64 {
+        let drive = &self.state.drive;
+        self.state.water_density * drive.gravity(drive.share(self.start)).norm()
+    }
+
+    /// Level of the reservoir (m).
+    fn level(&self) -> f64 {
+        self.state.drive.water_level(self.state.drive.share(self.start))
+    }
+
+    /// A value of the stage, or one on the way to it from that of before.
+    fn on_way(&self, to: f64, from: impl Fn(&Seepage) -> f64) -> f64 {
+        match self.way {
+            Some((before, share)) if share < 1.0 => {
+                let from = from(before);
+                from + (to - from) * share
+            }
+            _ => to,
+        }
+    }
+
+    fn heads(&self) -> impl Iterator<Item = f64> {
+        let (drive, share) = (&self.state.drive, self.state.drive.share(self.start));
+        let on_way = |head: usize, to: f64| self.on_way(to, |before| before.surroundings.heads[head]);
+        (0..self.net.heads.len()).map(move |head| on_way(head, drive.head(head, share)))
+    }
+
+    fn rains(&self) -> impl Iterator<Item = f64> {
+        let (drive, share) = (&self.state.drive, self.state.drive.share(self.start));
+        let on_way = |rain: usize, to: f64| self.on_way(to, |before| before.surroundings.rains[rain]);
+        (0..self.net.rains.len()).map(move |rain| on_way(rain, drive.rain(rain, share)))
+    }
+
+    pub fn surroundings(&self) -> Surroundings {
+        let (heads, rains) = (self.heads().collect(), self.rains().collect());
+        let drains = self.state.drive.to.drain.clone();
+        Surroundings { level: self.level(), weight: self.weight(), heads, rains, drains }
+    }
+
+    /// Whether the surroundings are still these; looks without allocating.
+    fn are_as(&self, Surroundings { level, weight, heads, rains, drains }: &Surroundings) -> bool {
+        (self.level(), self.weight()) == (*level, *weight)
+            && self.heads().eq(heads.iter().copied())
+            && self.rains().eq(rains.iter().copied())
+            && self.state.drive.to.drain == *drains
+    }
+
+    /// A flow that has not been found, with its place.
+    pub fn failed(&self, failure: Failure) -> StepError {
+        let node = match failure {
+            Failure::Unsolved(Unsolved { node, .. }) | Failure::Refused(Refused::Value { index: node, .. }) => node,
+            Failure::Refused(_) => 0,
+        };
+        let piece = self.net.pieces.iter().find(|piece| piece.nodes.contains(&(node as u32)));
+        let block = piece.map_or(0, |piece| self.model.labels[self.block(piece.edges[0])]);
+        let position = self.net.places.get(node).copied().unwrap_or_default();
+        StepError { block, position, time: self.start, failure: step::Failure::Flow(failure) }
     }
 
     fn survey(&self) -> FlowSurvey {
-        let conductance = self.conductance();
+        let conductance = self.conductance(&self.opened());
         let conditions = self.conditions(&self.flooded(), &conductance);
         let labels = self.net.net.pieces(&conductance);
         let (mut ends, mut fed) = (vec![0_u32; labels.len()], vec![false; labels.len()]);
@@ -152,28 +282,45 @@ impl Seen<'_> {
         }
     }
 
-    /// Conductance (m²/s per m of head) of each piece; 0 where blocks are gone, bonds hold or the law is closed.
-    fn conductance(&self) -> Vec<f64> {
-        let drive = &self.state.drive;
-        let weight = self.state.water_density * drive.gravity(drive.share(self.start)).norm();
+    /// Conductance (m²/s per m of head) of each piece with apertures (m) at its nodes; 0 where blocks are gone.
+    pub fn conductance(&self, apertures: &[[f64; 2]]) -> Vec<f64> {
+        let weight = self.weight();
+        let of_piece = |(piece, own): (&FlowPiece, &[f64; 2])| match own[0] > 0.0 && self.is_there(piece) {
+            true => self.net.conductance(piece, *own, weight),
+            false => 0.0,
+        };
+        self.net.pieces.iter().zip(apertures).map(of_piece).collect()
+    }
+
+    /// Apertures (m) at the nodes of each piece now; 0 where blocks are gone, bonds hold or the law is closed.
+    pub fn opened(&self) -> Vec<[f64; 2]> {
         let bonds = bond_states(self.model, self.state);
         let conducts = |piece: &FlowPiece| {
             let holds = piece.edges.iter().any(|edge| bonds[edge.index()] == BondState::Holds);
-            let is_there = piece.edges.iter().all(|&edge| !self.is_gone(edge));
-            !holds && is_there && self.net.apertures[self.state.law_switch[piece.law].index()] > 0.0
+            !holds && self.is_there(piece) && self.net.apertures[self.state.law_switch[piece.law].index()] > 0.0
         };
-        let of_piece = |piece: &FlowPiece| match conducts(piece) {
-            true => self.net.conductance(piece, self.apertures(piece), weight),
-            false => 0.0,
-        };
+        let of_piece = |piece: &FlowPiece| if conducts(piece) { self.apertures(piece) } else { [0.0; 2] };
         self.net.pieces.iter().map(of_piece).collect()
     }
 
+    /// Whether both blocks of a piece are there.
+    fn is_there(&self, piece: &FlowPiece) -> bool {
+        piece.edges.iter().all(|&edge| !self.is_gone(edge))
+    }
+
     /// Condition at each node, and which inlet it is.
-    fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
+    pub fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
         let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
         let conducts = self.net.conducting(conductance);
-        self.net.conditions(Outside { stage: self.stage, dug: &dug, depths: &depths, conducts: &conducts })
+        let (heads, rains): (Vec<f64>, Vec<f64>) = (self.heads().collect(), self.rains().collect());
+        self.net.conditions(Outside {
+            heads: &heads,
+            rains: &rains,
+            drains: &self.state.drive.to.drain,
+            dug: &dug,
+            depths: &depths,
+            conducts: &conducts,
+        })
     }
 
     fn block(&self, edge: EdgeId) -> BlockId {
@@ -185,7 +332,7 @@ impl Seen<'_> {
     }
 
     /// Apertures (m) at both ends of a piece, by what it has opened since the start.
-    fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
+    pub fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
         let (boundary, law) = (&self.model.boundary, self.state.law_switch[piece.law]);
         let stars = &self.model.covers.star_position;
         let moved = |point: EdgeId| boundary.sample(point, &self.state.displacement);
@@ -203,13 +350,14 @@ impl Seen<'_> {
 
     /// Depth (m) of a position below the surface of the reservoir; negative where there is none.
     fn depth(&self, at: Point) -> f64 {
-        let drive = &self.state.drive;
-        let level = drive.water_level(drive.share(self.start));
-        self.model.water.as_ref().map_or(-1.0, |water| water.surfaces[self.stage].depth(level, at))
+        let Some(water) = &self.model.water else { return -1.0 };
+        let of_stage = |before: &Seepage| before.balances.last().map_or(0, |balance| balance.stage as usize);
+        let was = |before: &Seepage| water.surfaces[of_stage(before)].depth(before.surroundings.level, at);
+        self.on_way(water.surfaces[self.stage].depth(self.level(), at), was)
     }
 
     /// Blocks that have been dug out and filled by the reservoir: those with a face in it, and those beside them.
-    fn flooded(&self) -> Vec<bool> {
+    pub fn flooded(&self) -> Vec<bool> {
         let (boundary, removed) = (&self.model.boundary, &self.state.removed);
         let mut flooded = vec![false; removed.len()];
         let deep = |edge: EdgeId| [edge, boundary.after(edge)].iter().any(|&k| self.depth(boundary.reference[k]) > 0.0);

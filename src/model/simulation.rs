@@ -268,13 +268,17 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn advance_for(&mut self, wanted: Wanted) -> Result<StepReport, StepError> {
         self.looks.forget();
+        self.follow_flow()?;
+        let rest = self.state.rest_of_step(&self.built.model);
         let watched = self.watch(wanted);
         let is_due = wanted == Wanted::Report && self.rest_due();
         let is_small = self.workspace.selection.kept_gaps.is_some();
         let audits = self.state().step.is_multiple_of(overlap::EVERY) && !is_small;
         let mut made = step::advance(&self.built.model, self.regime, &mut self.state, &mut self.workspace, wanted)?;
+        self.pass_water(rest);
         if is_due {
             self.state.most_rest = self.most_rest_with(&made);
+            self.follow_openings(&made)?;
         }
         if audits {
             self.note_overlaps();
@@ -315,7 +319,11 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn advance_part(&mut self, dt: f64, wanted: Wanted) -> Result<StepReport, StepError> {
         self.looks.forget();
-        step::advance_part(&self.built.model, self.regime, &mut self.state, &mut self.workspace, dt, wanted)
+        self.follow_flow()?;
+        let made =
+            step::advance_part(&self.built.model, self.regime, &mut self.state, &mut self.workspace, dt, wanted)?;
+        self.pass_water(dt);
+        Ok(made)
     }
 
     /// Energies and the unbalanced ratio now, under the inputs of the last step; nothing advances. They are worked out

@@ -3,7 +3,7 @@
 use crate::contact::{BoltState, JointLaw, LawId};
 use crate::cover::BlockId;
 use crate::geometry::{Point, polygon};
-use crate::state::Ledger;
+use crate::state::{Drive, Ledger};
 use crate::step::{self, Regime};
 
 use super::Simulation;
@@ -72,7 +72,8 @@ impl Simulation {
         self.change_fixities(stage);
         self.change_bolts(stage)?;
         self.change_water(stage);
-        // Dynamic stages hold the pressures of before.
+        self.change_flow(stage);
+        // Dynamic stages hold the pressures of before, or find them in their first step.
         if stage == 0 || self.case.stages[stage].kind == StageKind::Static {
             self.find_flow(stage, start)?;
         }
@@ -129,6 +130,21 @@ impl Simulation {
         };
         let (level, drive) = (water.surfaces[stage].level, &mut self.state.drive);
         (drive.from.water_level, drive.to.water_level) = (level, level);
+    }
+
+    /// Heads, rain and drains that a stage sets.
+    fn change_flow(&mut self, stage: usize) {
+        let Some(net) = &self.built.model.flow else { return };
+        let (brought, Drive { from, to, .. }) = (&self.case.stages[stage], &mut self.state.drive);
+        for (k, head) in net.heads.iter().enumerate().filter(|(_, head)| brought.heads.contains_key(&head.name)) {
+            (from.head[k], to.head[k]) = (head.levels[stage], head.levels[stage]);
+        }
+        for (k, rain) in net.rains.iter().enumerate().filter(|(_, rain)| brought.rain.contains_key(&rain.name)) {
+            (from.rain[k], to.rain[k]) = (rain.rates[stage], rain.rates[stage]);
+        }
+        for (k, _) in net.drains.iter().enumerate().filter(|(_, drain)| brought.drain.contains(&drain.name)) {
+            (from.drain[k], to.drain[k]) = (true, true);
+        }
     }
 
     fn change_fixities(&mut self, stage: usize) {

@@ -22,6 +22,12 @@ pub enum Input {
     Block(u32),
     /// Traction, pressure or velocity of a port.
     Port(u32),
+    /// Level of a head.
+    Head(u32),
+    /// Rate of rain.
+    Rain(u32),
+    /// Whether a drain acts.
+    Drain(u32),
 }
 
 /// Values that a host sets; each holds until it is set again.
@@ -46,12 +52,18 @@ pub struct Inputs {
     /// Particle velocity (m/s) of the wave that comes in through each quiet boundary, or velocity of each fixity that
     /// is moved.
     pub port_velocity: Vec<Vector>,
+    /// Level (m) of each head of water in joints.
+    pub head: Vec<f64>,
+    /// Rate (m/s) of each rain.
+    pub rain: Vec<f64>,
+    /// Whether each drain acts; a switch that goes over at once.
+    pub drain: Vec<bool>,
 }
 
 clone_without_allocating! {
     Inputs {
         gravity base_acceleration water_level strength_factor block_force block_moment port_traction port_pressure
-        port_velocity
+        port_velocity head rain drain
     }
 }
 
@@ -74,12 +86,16 @@ impl Inputs {
                 self.port_pressure[port] = others.port_pressure[port];
                 self.port_velocity[port] = others.port_velocity[port];
             }
+            Input::Head(head) => self.head[head as usize] = others.head[head as usize],
+            Input::Rain(rain) => self.rain[rain as usize] = others.rain[rain as usize],
+            Input::Drain(drain) => self.drain[drain as usize] = others.drain[drain as usize],
         }
     }
 
     /// The values that the case starts with.
     pub fn of(model: &Model) -> Self {
         let (blocks, ports) = (model.covers.block_count(), model.ports.len());
+        let flow = model.flow.as_ref();
         let mut inputs = Self {
             gravity: model.gravity,
             base_acceleration: Vector::zeros(),
@@ -90,6 +106,9 @@ impl Inputs {
             port_traction: vec![Vector::zeros(); ports],
             port_pressure: vec![0.0; ports],
             port_velocity: vec![Vector::zeros(); ports],
+            head: flow.iter().flat_map(|net| &net.heads).map(|head| head.levels[0]).collect(),
+            rain: flow.iter().flat_map(|net| &net.rains).map(|rain| rain.rates[0]).collect(),
+            drain: flow.iter().flat_map(|net| &net.drains).map(|drain| drain.active[0]).collect(),
         };
         for (k, port) in model.ports.iter().enumerate() {
             match port.kind {
@@ -208,12 +227,20 @@ impl Drive {
         mix_all(&mut from.port_traction, &to.port_traction, share);
         mix_all(&mut from.port_pressure, &to.port_pressure, share);
         mix_all(&mut from.port_velocity, &to.port_velocity, share);
+        mix_all(&mut from.head, &to.head, share);
+        mix_all(&mut from.rain, &to.rain, share);
+        from.drain.clone_from(&to.drain);
         self.since = t;
     }
 
     /// Gravity at a share of the way (m/s²).
     pub fn gravity(&self, share: f64) -> Vector {
         mix(self.from.gravity, self.to.gravity, share)
+    }
+
+    /// Gravity (m/s²) that acts at time `t` (s); a jump that has not acted yet is left out.
+    pub fn gravity_now(&self, t: f64) -> Vector {
+        if self.is_moving() { self.gravity(self.share(t)) } else { self.from.gravity }
     }
 
     /// Acceleration of the base at a share of the way (m/s²).
@@ -224,6 +251,16 @@ impl Drive {
     /// Water level at a share of the way (m).
     pub fn water_level(&self, share: f64) -> f64 {
         mix(self.from.water_level, self.to.water_level, share)
+    }
+
+    /// Level (m) of a head at a share of the way.
+    pub fn head(&self, head: usize, share: f64) -> f64 {
+        mix(self.from.head[head], self.to.head[head], share)
+    }
+
+    /// Rate (m/s) of a rain at a share of the way.
+    pub fn rain(&self, rain: usize, share: f64) -> f64 {
+        mix(self.from.rain[rain], self.to.rain[rain], share)
     }
 
     /// Strength factor at a share of the way.

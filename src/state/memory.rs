@@ -6,7 +6,7 @@ use crate::flow::FlowNet;
 use crate::mechanics::MassMatrix;
 
 use super::workspace::{SelectionBuffers, YieldBuffers};
-use super::{Drive, Events, Inputs, Model, Seepage, State, Workspace};
+use super::{Drive, Events, Inputs, Model, Seepage, State, Surroundings, Workspace};
 
 /// Name of a part of a heap, and its bytes.
 pub type Part = (&'static str, usize);
@@ -124,8 +124,11 @@ impl State {
 }
 
 fn flowing(seepage: &Seepage) -> usize {
-    let Seepage { unknowns, conducts, flooded, balances } = seepage;
-    sum(&[unknowns, conducts, flooded, balances])
+    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, rounds, passed: _, time: _ } =
+        seepage;
+    let Surroundings { level: _, weight: _, heads, rains, drains } = surroundings;
+    let of_rounds: usize = rounds.iter().map(|round| sum(&[&round.logs, &round.asked])).sum();
+    of_rounds + sum(&[unknowns, conducts, apertures, flooded, balances, heads, rains, drains])
 }
 
 impl Workspace {
@@ -201,12 +204,15 @@ fn inputs(inputs: &Inputs) -> usize {
         port_traction,
         port_pressure,
         port_velocity,
+        head,
+        rain,
+        drain,
         gravity: _,
         base_acceleration: _,
         water_level: _,
         strength_factor: _,
     } = inputs;
-    sum(&[block_force, block_moment, port_traction, port_pressure, port_velocity])
+    sum(&[block_force, block_moment, port_traction, port_pressure, port_velocity, head, rain, drain])
 }
 
 fn events(events: &Events) -> usize {

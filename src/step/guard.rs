@@ -32,6 +32,9 @@ pub enum Failure {
         /// Limit (m).
         limit: f64,
     },
+    /// The flow of water in joints has not been found.
+    #[error("{0}; let apertures differ less, or close joints to water there by `aperture = 0`")]
+    Flow(enmm_seepage::Failure),
     /// Rock has broken too often.
     #[error("the rock breaks once more than {limit} times (raise fracture.{key}, or the strength of the rock)")]
     Parts {

@@ -7,6 +7,8 @@ pub const ACCELERATION_MAX: f64 = 1e4;
 pub const VELOCITY_MAX: f64 = 1e4;
 /// Magnitude of a height or another coordinate (m): beyond it a double resolves less than a tenth of a micrometre.
 pub const LEVEL_MAX: f64 = 1e9;
+/// Rate of rain (m/s).
+pub const RAIN_MAX: f64 = 1e-3;
 /// Factor on the strength of joints.
 pub const FACTOR_MAX: f64 = 1e6;
 /// Magnitude of a force (N/m), a moment (N·m/m), a traction or a pressure (Pa).

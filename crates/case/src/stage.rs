@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::flow::{HEAD, RATE};
+use crate::flow::{EVERY, HEAD, RATE};
 use crate::joint_law::{COHESION, FRICTION, TENSION};
 use crate::keys::shared::{PLACE, TIME};
 use crate::keys::unit::{NUMBER, SECOND};
 use crate::keys::{Range, Rule, keys, words};
-use crate::{PointList, WaterSurface};
+use crate::{PointList, StageFlow, WaterSurface};
 
 words! {
     /// How a stage treats time.
@@ -76,15 +76,28 @@ keys! {
         /// that of `[water]`. What hosts have moved the level by ends with it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub water: Option<WaterSurface>,
-        /// Static: levels (m) of heads by the name of their `[[head]]`, from the start of this stage on; not in the
-        /// first stage, which has those of `[[head]]`.
+        /// With `[flow]`. Static: time of the flow, as `{ time = 86400.0, steps = 24 }`, in which it goes on from that
+        /// of the stage before; default: the steady flow; not in the first stage, before which there is none. Dynamic:
+        /// `"hold"` (default) keeps the pressures of water in joints as the last static stage
+        /// found them, `"steady"` finds the steady flow again and again, through the apertures that it had there, as
+        /// levels, heads, rain and drains follow a host or this stage.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub flow: Option<StageFlow>,
+        /// Dynamic, with `flow = "steady"`: the flow is found at the start of the stage and after every so many
+        /// internal steps; default: 10.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub flow_every: Option<u32> => EVERY,
+        /// Levels (m) of heads by the name of their `[[head]]`, from the start of this stage on; not in the first
+        /// stage, which has those of `[[head]]`, and not in dynamic ones that hold the flow. Levels that hosts have set
+        /// end with it.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub heads: BTreeMap<String, f64> => HEAD,
-        /// Static: rates (m/s) of rain by the name of its `[[rain]]`, from the start of this stage on; not in the first
-        /// stage, which has those of `[[rain]]`.
+        /// Rates (m/s) of rain by the name of its `[[rain]]`, from the start of this stage on; not in the first stage,
+        /// which has those of `[[rain]]`, and not in dynamic ones that hold the flow. Rates that hosts have set end
+        /// with it.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         pub rain: BTreeMap<String, f64> => RATE,
-        /// Static: drains by name that act from the start of this stage on.
+        /// Drains by name that act from the start of this stage on; not in dynamic stages that hold the flow.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         pub drain: Vec<String>,
     }

@@ -11,19 +11,23 @@
 //! | bolts | [`BoltLine`] | [`BOLT_QUANTITIES`] |
 //! | supports | [`SupportPoint`] | |
 //! | water | [`WetEdge`] | |
+//! | joints in which water flows | [`FlowLine`] | [`FLOW_QUANTITIES`] |
 //! | energies and works | [`Ledger`] | [`ENERGIES`] |
 //! | sums at the end of a step | [`StepReport`] | [`REPORT_QUANTITIES`] |
 //! | sums for hosts | [`Totals`] | [`TOTALS`] |
 //! | ports | [`PortState`] | [`PORT_QUANTITIES`] |
 //! | monitors | [`MonitorState`] | [`MONITOR_QUANTITIES`] |
+//! | heads, rain and drains | [`InletState`] | [`INLET_QUANTITIES`] |
 //!
-//! Blocks, energies, ports, monitors and sums for hosts are worked out by the engine, because the C library and the
+//! Blocks, energies, ports, monitors, heads and sums for hosts are worked out by the engine, because the C library and the
 //! FMUs read them between two steps.
 #![forbid(unsafe_code)]
 
 mod bolts;
 mod bonds;
 mod edges;
+mod flow;
+mod flow_doubts;
 mod joints;
 mod loops;
 mod sections;
@@ -35,13 +39,15 @@ mod water;
 
 pub use enmm::cosimulation::{PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use enmm::model::{
-    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, Ledger, MONITOR_QUANTITIES, MonitorState,
-    Quantity, STRENGTH_QUANTITIES, StepReport,
+    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, INLET_QUANTITIES, InletState, Ledger,
+    MONITOR_QUANTITIES, MonitorState, Quantity, STRENGTH_QUANTITIES, StepReport,
 };
 
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
 pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
+pub use flow::{DrainFlow, FLOW_QUANTITIES, FlowLine, Seep, WaterInJoints};
+pub use flow_doubts::{LiftedBlock, flow_doubts, lifted_blocks};
 pub use joints::{JOINT_QUANTITIES, JointPiece, Joints, SlipSince};
 pub use loops::{loops, node_loops};
 pub use sections::{RockSection, broken_sections, rock_sections};

@@ -1,7 +1,7 @@
 //! Reasons for which there is no net or no flow.
 
 /// Input that a net cannot have, with the place where it stands.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Refused {
     /// A list has another length than the net needs.
     #[error("`{name}` has {length} values, and the net needs {needed}")]
@@ -60,7 +60,7 @@ pub struct Unsolved {
 }
 
 /// Reason for which there is no flow.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// The input makes no sense.
     #[error(transparent)]

@@ -1,7 +1,7 @@
 //! Structures of the header whose members are rows of the engine's tables of quantities.
 
 use engine::cosimulation::{PORT_QUANTITIES, Quantity, TOTALS};
-use engine::model::{BLOCK_QUANTITIES, MONITOR_QUANTITIES};
+use engine::model::{BLOCK_QUANTITIES, INLET_QUANTITIES, MONITOR_QUANTITIES};
 
 use super::layout::{self, Kind};
 
@@ -38,11 +38,14 @@ Energies and works half an internal step ago, as velocities are, per metre of th
 /// equals contact_work + support_work + bolt_work + radiation + external_work + baseline + residual.";
 const TOTALS_TEXT: &str = "Sums and extremes over the model.";
 const PORT: &str = "\
-A port now. A block fills all but the last three values; a boundary displacement, velocity and stress; joints the
-/// last three. What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the
-/// mean along it.";
+A port now. A block fills all from its displacement to its stress; a boundary displacement, velocity and stress;
+/// joints normal_force, shear_force, slip and, in a case with `[flow]`, the water in them; a quiet boundary
+/// displacement, velocity and traction; a fixity displacement, velocity and reaction. What is not filled is 0. Motions
+/// of a block are those of its mass centroid, of a boundary the mean along it.";
 const MONITOR: &str = "\
 A monitor now. Its velocity is that of half an internal step ago.";
+const INLET: &str = "\
+Water at a head, in rain or at a drain, as the flow was found last.";
 const HEAD: &str = "\
     /// Size of this structure (bytes), set by the caller.
     pub struct_size: usize,
@@ -58,6 +61,7 @@ pub fn source() -> String {
         + &source("enmm_totals", TOTALS_TEXT, HEAD, &members(TOTALS.iter()))
         + &source("enmm_port_state", PORT, HEAD, &members(PORT_QUANTITIES.iter()))
         + &source("enmm_monitor_state", MONITOR, HEAD, &members(MONITOR_QUANTITIES.iter()))
+        + &source("enmm_inlet_state", INLET, HEAD, &members(INLET_QUANTITIES.iter()))
 }
 
 fn members<T: 'static>(table: impl Iterator<Item = &'static Quantity<T>>) -> String {

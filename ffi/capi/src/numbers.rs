@@ -2,7 +2,9 @@
 //! name them one by one.
 
 use engine::cosimulation::{PORT_QUANTITIES, PortState, Quantity, TOTALS, Totals};
-use engine::model::{BLOCK_QUANTITIES, BlockState, ENERGIES, Ledger, MONITOR_QUANTITIES, MonitorState};
+use engine::model::{
+    BLOCK_QUANTITIES, BlockState, ENERGIES, INLET_QUANTITIES, InletState, Ledger, MONITOR_QUANTITIES, MonitorState,
+};
 
 use crate::layout::{Kind, energies};
 use crate::types::*;
@@ -57,12 +59,22 @@ pub struct enmm_monitor_state {
     numbers: [u64; MONITOR_QUANTITIES.len()],
 }
 
+/// Water at a head, in rain or at a drain.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_inlet_state {
+    /// Size of this structure (bytes).
+    pub struct_size: usize,
+    numbers: [u64; INLET_QUANTITIES.len()],
+}
+
 sized! {
     enmm_block_state 152 { struct_size id flags numbers }
     enmm_energies 128 { struct_size numbers }
     enmm_totals 72 { struct_size numbers }
     enmm_port_state 120 { struct_size numbers }
     enmm_monitor_state 40 { struct_size numbers }
+    enmm_inlet_state 32 { struct_size numbers }
 }
 
 impl enmm_block_state {
@@ -101,6 +113,12 @@ impl From<&PortState> for enmm_port_state {
 impl From<&MonitorState> for enmm_monitor_state {
     fn from(monitor: &MonitorState) -> Self {
         Self { struct_size: size_of::<Self>(), numbers: words(MONITOR_QUANTITIES.iter(), monitor) }
+    }
+}
+
+impl From<&InletState> for enmm_inlet_state {
+    fn from(inlet: &InletState) -> Self {
+        Self { struct_size: size_of::<Self>(), numbers: words(INLET_QUANTITIES.iter(), inlet) }
     }
 }
 

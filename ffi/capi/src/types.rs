@@ -106,6 +106,12 @@ pub enum enmm_input {
     ENMM_INPUT_BLOCK = 4,
     /// Inputs of the port that the index names.
     ENMM_INPUT_PORT = 5,
+    /// Level of the head that the index names.
+    ENMM_INPUT_HEAD = 6,
+    /// Rate of the rain that the index names.
+    ENMM_INPUT_RAIN = 7,
+    /// Whether the drain acts that the index names; it is a switch in either way.
+    ENMM_INPUT_DRAIN = 8,
 }
 
 /// Kinds of things that have a number and a name.
@@ -126,6 +132,12 @@ pub enum enmm_name_kind {
     ENMM_NAME_MONITOR = 5,
     /// A port, in the order of the case.
     ENMM_NAME_PORT = 6,
+    /// A head of water in joints, in the order of the case.
+    ENMM_NAME_HEAD = 7,
+    /// Rain on joints, in the order of the case.
+    ENMM_NAME_RAIN = 8,
+    /// A drain, in the order of the case.
+    ENMM_NAME_DRAIN = 9,
 }
 
 /// State of a contact.

@@ -111,6 +111,11 @@ fn bridges_that_break_are_events_and_give_the_same_bits_again() {
 }
 
 #[test]
+fn water_in_joints_follows_heads_rain_and_drains_to_the_same_bits() {
+    succeed(Command::new(host("ffi/capi/tests/c/flows.c")).arg("ffi/capi/tests/cases/dam.toml"));
+}
+
+#[test]
 fn energy_from_nowhere_is_a_warning_in_the_log() {
     // Rock of 50 Pa instead of 1 GPa: the initial equilibrium has two steps of 3.2 s.
     let small = std::fs::read_to_string(root().join(SMALL)).expect("the case");

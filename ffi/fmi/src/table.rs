@@ -1,10 +1,10 @@
 //! The one table of variables: both model descriptions, every getter and every setter follow it.
 
-use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, THREADS_MAX, VALUE_MAX};
-use enmm::cosimulation::{PORT_QUANTITIES, Parameter, PortKind, TOTALS, parameters};
+use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, RAIN_MAX, THREADS_MAX, VALUE_MAX};
+use enmm::cosimulation::{Named, PORT_QUANTITIES, Parameter, PortKind, TOTALS, parameters};
 use enmm::model::case::Port;
 use enmm::model::case::keys::Plain;
-use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, MONITOR_QUANTITIES};
+use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, INLET_QUANTITIES, MONITOR_QUANTITIES};
 use uuid::Uuid;
 
 /// Version of the standard.
@@ -118,6 +118,14 @@ pub enum Quantity {
     BlockForce(Axis),
     /// Moments on all blocks (N·m/m).
     BlockMoment,
+    /// Level of a head of water in joints (m).
+    Head(usize),
+    /// Rate of rain (m/s).
+    Rain(usize),
+    /// Whether a drain acts.
+    Drain(usize),
+    /// Output of a head, a rain or a drain, by its place: its place in [`INLET_QUANTITIES`].
+    Inlet(Named, usize, usize),
     /// Output of a port: its place in [`PORT_QUANTITIES`].
     Port(usize, usize),
     /// Output of a monitor: its place in [`MONITOR_QUANTITIES`].
@@ -134,7 +142,8 @@ impl Quantity {
     /// Whether the value is a function of the state of the model alone: an input that is set does not change it before
     /// the next step. Everything but the snapshot is such, which holds the inputs.
     pub fn is_of_state(self) -> bool {
-        matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Blocks(_) | Self::Block(..) | Self::Total(_))
+        let of_places = matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Inlet(..));
+        of_places || matches!(self, Self::Blocks(_) | Self::Block(..) | Self::Total(_))
     }
 }
 
@@ -235,6 +244,9 @@ impl Table {
         rows.results_folder();
         if case.has_cuts() {
             BREAKING_TOTALS.into_iter().for_each(|total| rows.total(total));
+        }
+        if case.flow.is_some() {
+            rows.flow(case);
         }
         set_nominals(&mut rows.variables, case);
         let token = token(&rows.variables, hash, version);
@@ -354,7 +366,8 @@ fn plain(name: &str) -> String {
 fn input_limits(quantity: Quantity) -> Option<(f64, f64)> {
     let most = match quantity {
         Quantity::Gravity(_) | Quantity::BaseAcceleration(_) => ACCELERATION_MAX,
-        Quantity::WaterLevel => LEVEL_MAX,
+        Quantity::WaterLevel | Quantity::Head(_) => LEVEL_MAX,
+        Quantity::Rain(_) => return Some((0.0, RAIN_MAX)),
         Quantity::StrengthFactor => return Some((0.0, FACTOR_MAX)),
         _ => VALUE_MAX,
     };
@@ -521,13 +534,7 @@ impl Rows {
 
     fn outputs(&mut self, case: &Case, version: Version) {
         for (k, port) in case.ports.iter().enumerate() {
-            for place in port_outputs(port_kind(port)).iter().filter_map(|name| place_of(&PORT_QUANTITIES, name)) {
-                let quantity = &PORT_QUANTITIES[place];
-                let name = format!("{}.{}", port.name, quantity.name);
-                let what = format!("{}, port {}", quantity.text, port.name);
-                let row = self.output(&name, &what, quantity.unit, Quantity::Port(k, place));
-                row.port = Some(port.name.clone());
-            }
+            port_outputs(port_kind(port)).iter().for_each(|name| self.port_output(k, port, name));
         }
         for (k, monitor) in case.monitors.iter().enumerate() {
             for (place, quantity) in MONITOR_QUANTITIES.iter().enumerate() {
@@ -536,12 +543,57 @@ impl Rows {
                 self.output(&name, &what, quantity.unit, Quantity::Monitor(k, place));
             }
         }
-        let (first, later) = totals();
+        let Rowed { first, later, .. } = totals();
         first.into_iter().for_each(|total| self.total(total));
         if version == Version::Three {
             self.block_outputs();
         }
         later.into_iter().for_each(|total| self.total(total));
+    }
+
+    /// Inputs and outputs of water that flows in joints, behind all that other cases have.
+    fn flow(&mut self, case: &Case) {
+        for (k, head) in case.heads.iter().enumerate() {
+            let what = format!("Level of the head where the flow in joints is found, head {}", head.name);
+            self.input(&format!("{}.head", head.name), &what, "m", head.level, Quantity::Head(k));
+        }
+        for (k, rain) in case.rains.iter().enumerate() {
+            let what = format!("Rain on each square metre in plan where the flow in joints is found, {}", rain.name);
+            self.input(&format!("{}.rate", rain.name), &what, "m/s", rain.rate, Quantity::Rain(k));
+        }
+        for (k, drain) in case.drains.iter().enumerate() {
+            let what = format!("Whether the drain acts, drain {}; a switch at the start of the next step", drain.name);
+            let name = format!("{}.active", drain.name);
+            self.push(&name, &what, "", Type::Boolean, Causality::Input, Quantity::Drain(k));
+            let acts = drain.active || case.stages.iter().take(1).any(|stage| stage.drain.contains(&drain.name));
+            self.last().start = Some(if acts { 1.0 } else { 0.0 });
+        }
+        case.heads.iter().enumerate().for_each(|(k, head)| self.inlet(Named::Head, k, &head.name, &["inflow"]));
+        for (k, rain) in case.rains.iter().enumerate() {
+            self.inlet(Named::Rain, k, &rain.name, &["inflow", "run_off"]);
+        }
+        case.drains.iter().enumerate().for_each(|(k, drain)| self.inlet(Named::Drain, k, &drain.name, &["outflow"]));
+        for (k, port) in case.ports.iter().enumerate().filter(|(_, port)| port_kind(port) == PortKind::Joint) {
+            FLOW_PORT_OUTPUTS.into_iter().for_each(|name| self.port_output(k, port, name));
+        }
+        totals().flow.into_iter().for_each(|total| self.total(total));
+    }
+
+    /// Outputs of a head, a rain or a drain.
+    fn inlet(&mut self, kind: Named, k: usize, of: &str, names: &[&str]) {
+        for place in names.iter().filter_map(|name| place_of(&INLET_QUANTITIES, name)) {
+            let quantity = &INLET_QUANTITIES[place];
+            let (name, what) = (format!("{of}.{}", quantity.name), format!("{}, {of}", quantity.text));
+            self.output(&name, &what, quantity.unit, Quantity::Inlet(kind, k, place));
+        }
+    }
+
+    /// An output of a port by its name in [`PORT_QUANTITIES`].
+    fn port_output(&mut self, k: usize, port: &Port, name: &str) {
+        let Some(place) = place_of(&PORT_QUANTITIES, name) else { return };
+        let quantity = &PORT_QUANTITIES[place];
+        let (name, what) = (format!("{}.{name}", port.name), format!("{}, port {}", quantity.text, port.name));
+        self.output(&name, &what, quantity.unit, Quantity::Port(k, place)).port = Some(port.name.clone());
     }
 
     /// Outputs of one block.
@@ -625,6 +677,9 @@ fn port_outputs(kind: PortKind) -> &'static [&'static str] {
     }
 }
 
+/// Outputs of a port of joints in which water flows; they stand behind all others.
+const FLOW_PORT_OUTPUTS: [&str; 3] = ["water_pressure", "water_pressure_max", "uplift"];
+
 /// Outputs of all blocks that keep the value references they have always had; all others follow.
 const FIRST_BLOCK_OUTPUTS: [&str; 13] = [
     "block_x",
@@ -698,8 +753,20 @@ const FIRST_TOTALS: [&str; 27] = [
     "last_event_subject",
 ];
 
-/// Outputs of the whole model: those of [`FIRST_TOTALS`] in its order, and all others in that of the tables.
-fn totals() -> (Vec<TotalRow>, Vec<TotalRow>) {
+/// Outputs of the whole model that those cases have in which water flows in joints.
+const FLOW_TOTALS: [&str; 4] = ["water_entered", "water_left", "flow_residual", "seepage_height"];
+
+/// Outputs of the whole model by their place.
+struct Rowed {
+    /// Those of [`FIRST_TOTALS`], in its order.
+    first: Vec<TotalRow>,
+    /// All others, in the order of the tables.
+    later: Vec<TotalRow>,
+    /// Those of [`FLOW_TOTALS`].
+    flow: Vec<TotalRow>,
+}
+
+fn totals() -> Rowed {
     let kind = |is_count| if is_count { Type::Integer } else { Type::Real };
     let energies = ENERGIES.iter().enumerate().map(|(k, q)| (Total::Energy(k), q.column, q.text, q.unit, Type::Real));
     let extremes =
@@ -708,9 +775,10 @@ fn totals() -> (Vec<TotalRow>, Vec<TotalRow>) {
     let known = rows.iter().find(|row| row.1 == FORMER[1]).copied();
     rows.extend(known.map(|(total, _, what, unit, kind)| (total, FORMER[0], what, unit, kind)));
     let place = |row: &TotalRow| FIRST_TOTALS.iter().position(|name| *name == row.1);
-    let (mut first, later): (Vec<_>, Vec<_>) = rows.into_iter().partition(|row| place(row).is_some());
+    let (mut first, others): (Vec<_>, Vec<_>) = rows.into_iter().partition(|row| place(row).is_some());
     first.sort_by_key(place);
-    (first, later)
+    let (flow, later) = others.into_iter().partition(|row| FLOW_TOTALS.contains(&row.1));
+    Rowed { first, later, flow }
 }
 
 #[cfg(test)]
@@ -720,7 +788,7 @@ mod tests {
     #[test]
     fn every_output_of_ports_and_blocks_is_in_a_table_of_the_engine() {
         let kinds = [PortKind::Block, PortKind::Joint, PortKind::Quiet, PortKind::Fix];
-        let ports = || kinds.into_iter().flat_map(port_outputs);
+        let ports = || kinds.into_iter().flat_map(port_outputs).chain(&FLOW_PORT_OUTPUTS);
         assert!(ports().all(|name| place_of(&PORT_QUANTITIES, name).is_some()));
         assert!(PORT_QUANTITIES.iter().all(|quantity| ports().any(|name| *name == quantity.name)));
         let is_shown = |name: &&str| BLOCK_QUANTITIES.iter().any(|quantity| quantity.column == *name);
@@ -729,9 +797,10 @@ mod tests {
 
     #[test]
     fn every_first_output_is_in_a_table() {
-        let (first, later) = totals();
+        let Rowed { first, later, flow } = totals();
+        assert_eq!(flow.iter().map(|row| row.1).collect::<Vec<_>>(), FLOW_TOTALS);
         assert_eq!(first.iter().map(|row| row.1).collect::<Vec<_>>(), FIRST_TOTALS);
-        assert_eq!(first.len() + later.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len() + 1);
+        assert_eq!(first.len() + later.len() + flow.len(), ENERGIES.len() + TOTALS.len() + OWN_TOTALS.len() + 1);
         assert_eq!(later.last().map(|row| row.1), Some(FORMER[0]));
     }
 }

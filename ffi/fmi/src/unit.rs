@@ -18,10 +18,12 @@ const fn unit(name: &'static str, quantity: &'static str, exponents: [i8; 4]) ->
 }
 
 /// All units of the table. Forces, moments and energies are per metre of depth.
-pub const UNITS: [Unit; 13] = [
+pub const UNITS: [Unit; 15] = [
     unit("1", "Ratio", [0; 4]),
     unit("s", "Time", [0, 0, 1, 0]),
     unit("m", "Length", [0, 1, 0, 0]),
+    unit("m2", "Area", [0, 2, 0, 0]),
+    unit("m2/s", "FlowPerLength", [0, 2, -1, 0]),
     unit("m/s", "Velocity", [0, 1, -1, 0]),
     unit("m/s2", "Acceleration", [0, 1, -2, 0]),
     unit("rad", "Angle", [0, 0, 0, 1]),

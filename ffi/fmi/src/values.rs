@@ -37,6 +37,12 @@ pub enum Group {
     Pressure(usize),
     /// Velocity of a port.
     Velocity(usize),
+    /// Level of a head.
+    Head(usize),
+    /// Rate of rain.
+    Rain(usize),
+    /// Whether a drain acts.
+    Drain(usize),
 }
 
 impl Group {
@@ -52,6 +58,9 @@ impl Group {
             Quantity::PortTraction(k, _) => Some(Self::Traction(k)),
             Quantity::PortPressure(k) => Some(Self::Pressure(k)),
             Quantity::PortVelocity(k, _) => Some(Self::Velocity(k)),
+            Quantity::Head(k) => Some(Self::Head(k)),
+            Quantity::Rain(k) => Some(Self::Rain(k)),
+            Quantity::Drain(k) => Some(Self::Drain(k)),
             _ => None,
         }
     }
@@ -134,6 +143,9 @@ impl Values {
             Group::Traction(k) => model.set_boundary_traction(k, vector(&|axis| Quantity::PortTraction(k, axis))),
             Group::Pressure(k) => model.set_pressure(k, scalar(Quantity::PortPressure(k))),
             Group::Velocity(k) => model.set_port_velocity(k, vector(&|axis| Quantity::PortVelocity(k, axis))),
+            Group::Head(k) => model.set_head(k, scalar(Quantity::Head(k))),
+            Group::Rain(k) => model.set_rain(k, scalar(Quantity::Rain(k))),
+            Group::Drain(k) => model.set_drain(k, scalar(Quantity::Drain(k)) != 0.0),
         }
     }
 
@@ -211,6 +223,9 @@ pub fn inputs_of(quantity: Quantity, blocks: usize) -> Vec<Input> {
         | Quantity::PortTraction(k, _)
         | Quantity::PortPressure(k)
         | Quantity::PortVelocity(k, _) => vec![Input::Port(k as u32)],
+        Quantity::Head(k) => vec![Input::Head(k as u32)],
+        Quantity::Rain(k) => vec![Input::Rain(k as u32)],
+        Quantity::Drain(k) => vec![Input::Drain(k as u32)],
         Quantity::BlockForce(_) | Quantity::BlockMoment => (0..blocks as u32).map(Input::Block).collect(),
         _ => Vec::new(),
     }

@@ -17,11 +17,12 @@ use quick_xml::events::Event;
 
 const VERSIONS: [Version; 2] = [Version::Two, Version::Three];
 const LIBRARY: &[u8] = b"not a library";
-const CASES: [&str; 4] = [
+const CASES: [&str; 5] = [
     "ffi/fmi/tests/cases/ports.toml",
     "examples/cases/block_on_incline.toml",
     "examples/cases/goodman_bray.toml",
     "examples/cases/coupled_slope.toml",
+    "ffi/capi/tests/cases/dam.toml",
 ];
 
 fn root() -> PathBuf {
@@ -400,6 +401,9 @@ fn start_values_are_those_that_the_model_starts_with() {
                 Quantity::PortMoment(port) => inputs.block_moment[block(port)],
                 Quantity::PortTraction(port, axis) => of(axis, inputs.port_traction[port]),
                 Quantity::PortPressure(port) => inputs.port_pressure[port],
+                Quantity::Head(head) => inputs.head[head],
+                Quantity::Rain(rain) => inputs.rain[rain],
+                Quantity::Drain(drain) => f64::from(u8::from(inputs.drain[drain])),
                 // They come on top of the forces of ports.
                 Quantity::BlockForce(_) | Quantity::BlockMoment => 0.0,
                 _ => continue,

@@ -73,8 +73,8 @@ from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, Me
 from ._results import Fos, Result, RunError
 from ._table import Table
 from ._tasks import bound, check, fos, run
-from ._types import Cut, Event, Inputs, PortInputs
-from ._values import BLOCK_FIELDS, Energies, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
+from ._types import Cut, Event, FlowInputs, Inputs, PortInputs
+from ._values import BLOCK_FIELDS, Energies, InletState, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
 
 __version__ = "0.1.0"
 
@@ -112,10 +112,12 @@ __all__ = [
     "EquilibriumWarning",
     "Event",
     "EventKind",
+    "FlowInputs",
     "Fos",
     "Frame",
     "Frames",
     "Imported",
+    "InletState",
     "Input",
     "Inputs",
     "Interpolation",

@@ -98,6 +98,12 @@ class Input(IntEnum):
     """Force and moment of the block that the index names."""
     PORT = 5
     """Inputs of the port that the index names."""
+    HEAD = 6
+    """Level of the head that the index names."""
+    RAIN = 7
+    """Rate of the rain that the index names."""
+    DRAIN = 8
+    """Whether the drain acts that the index names; it is a switch in either way."""
 
 
 class Interpolation(IntEnum):
@@ -140,6 +146,12 @@ class NameKind(IntEnum):
     """A place that the case names by `[[monitor]]`, in its order."""
     PORT = 6
     """A port, in the order of the case."""
+    HEAD = 7
+    """A head of water in joints, in the order of the case."""
+    RAIN = 8
+    """Rain on joints, in the order of the case."""
+    DRAIN = 9
+    """A drain, in the order of the case."""
 
 
 class StartInfo(ctypes.Structure):
@@ -181,6 +193,17 @@ class Progress(ctypes.Structure):
         ("unbalanced", c_double),
         ("is_equilibrium", c_uint32),
         ("reserved", c_uint32),
+    ]
+
+
+class InletState(ctypes.Structure):
+    """`enmm_inlet_state`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("inflow", c_double),
+        ("outflow", c_double),
+        ("run_off", c_double),
     ]
 
 
@@ -272,6 +295,10 @@ class Totals(ctypes.Structure):
         ("overlapping_pairs", c_uint64),
         ("broken_length", c_double),
         ("broken_joints", c_uint64),
+        ("water_entered", c_double),
+        ("water_left", c_double),
+        ("flow_residual", c_double),
+        ("seepage_height", c_double),
     ]
 
 
@@ -352,6 +379,9 @@ class PortState(ctypes.Structure):
         ("traction_y", c_double),
         ("reaction_x", c_double),
         ("reaction_y", c_double),
+        ("water_pressure", c_double),
+        ("water_pressure_max", c_double),
+        ("uplift", c_double),
     ]
 
 
@@ -379,6 +409,7 @@ STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_start_info": StartInfo,
     "enmm_step_info": StepInfo,
     "enmm_progress": Progress,
+    "enmm_inlet_state": InletState,
     "enmm_monitor_state": MonitorState,
     "enmm_block_state": BlockState,
     "enmm_energies": Energies,
@@ -436,6 +467,9 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_set_strength_factor": (c_int32, [c_void_p, c_double]),
     "enmm_set_port_velocity": (c_int32, [c_void_p, c_uint32, c_double, c_double]),
     "enmm_set_port_displacement": (c_int32, [c_void_p, c_uint32, c_double, c_double]),
+    "enmm_set_head": (c_int32, [c_void_p, c_uint32, c_double]),
+    "enmm_set_rain": (c_int32, [c_void_p, c_uint32, c_double]),
+    "enmm_set_drain": (c_int32, [c_void_p, c_uint32, c_int32]),
     "enmm_jump": (c_int32, [c_void_p]),
     "enmm_set_input_interpolation": (c_int32, [c_void_p, c_int32, c_uint32, c_int32]),
     "enmm_get_inputs": (
@@ -444,6 +478,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     ),
     "enmm_get_block_force": (c_int32, [c_void_p, c_uint32, POINTER(c_double), POINTER(c_double)]),
     "enmm_get_port_inputs": (c_int32, [c_void_p, c_uint32, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
+    "enmm_get_inlet_input": (c_int32, [c_void_p, c_int32, c_uint32, POINTER(c_double)]),
     "enmm_set_interpolation": (c_int32, [c_void_p, c_int32]),
     "enmm_get_interpolation": (c_int32, [c_void_p, POINTER(c_int32)]),
     "enmm_parameter_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
@@ -457,6 +492,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_set_parameters": (c_int32, [c_void_p, POINTER(c_uint32), c_size_t, POINTER(c_double)]),
     "enmm_name_count": (c_int32, [c_void_p, c_int32, POINTER(c_size_t)]),
     "enmm_name": (c_int32, [c_void_p, c_int32, c_uint32, c_char_p, c_size_t, POINTER(c_size_t)]),
+    "enmm_find_name": (c_int32, [c_void_p, c_int32, c_char_p, POINTER(c_uint32)]),
+    "enmm_get_inlet_state": (c_int32, [c_void_p, c_int32, c_uint32, POINTER(InletState)]),
     "enmm_get_monitor_state": (c_int32, [c_void_p, c_uint32, POINTER(MonitorState)]),
     "enmm_block_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
     "enmm_get_block_states": (c_int32, [c_void_p, POINTER(BlockState), c_size_t, POINTER(c_size_t)]),

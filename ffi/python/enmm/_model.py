@@ -24,8 +24,8 @@ from ._mapping import number_of
 from ._options import number, numbers, path
 from ._parameters import Parameters
 from ._ports import Port, Ports
-from ._types import CUT_FIELDS, Cut, Event, Inputs, PortInputs
-from ._values import Energies, MonitorState, StartInfo, StepInfo, Totals
+from ._types import CUT_FIELDS, Cut, Event, FlowInputs, Inputs, PortInputs
+from ._values import Energies, InletState, MonitorState, StartInfo, StepInfo, Totals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -354,7 +354,7 @@ class Model(Closing):
         self._core.call("enmm_set_interpolation", index("interpolation", mode))
 
     def set_interpolation_of(self, input: Input, mode: Interpolation, of: SupportsIndex = 0) -> None:
-        """Sets how one input goes through a communication step; `of` is the block or the port where it has one.
+        """Sets how one input goes through a communication step; `of` is the block, port, head, rain or drain.
 
         Holds from the next step on, and is part of saved states. `interpolation` sets that of all inputs.
         """
@@ -450,6 +450,22 @@ class Model(Closing):
         """
         self._core.call("enmm_set_port_displacement", self._port(port), *numbers(ux=ux, uy=uy))
 
+    def set_head(self, head: str | SupportsIndex, level: float) -> None:
+        """Sets the level (m) of a head of water in joints, by its name or its place in the case.
+
+        It acts where the flow is found: at the start of static stages, and in dynamic ones with `flow = "steady"`. A
+        model whose flow is held from now on raises InvalidArgumentError.
+        """
+        self._core.call("enmm_set_head", self._inlet(NameKind.HEAD, head), number("level", level))
+
+    def set_rain(self, rain: str | SupportsIndex, rate: float) -> None:
+        """Sets the rate (m/s, that is m3/s on each m2 in plan) of rain on joints; it acts as `set_head` does."""
+        self._core.call("enmm_set_rain", self._inlet(NameKind.RAIN, rain), number("rate", rate))
+
+    def set_drain(self, drain: str | SupportsIndex, is_active: bool) -> None:
+        """Lets a drain act or not; a switch, which is never interpolated and else acts as `set_head` does."""
+        self._core.call("enmm_set_drain", self._inlet(NameKind.DRAIN, drain), int(bool(is_active)))
+
     def jump(self) -> None:
         """Makes all inputs that have been set since the last step act at once from the start of the next one.
 
@@ -465,6 +481,17 @@ class Model(Closing):
         level, factor = c_double(), c_double()
         self._core.call("enmm_get_inputs", gravity, base, byref(level), byref(factor))
         return Inputs(tuple(gravity), tuple(base), level.value, factor.value)
+
+    @property
+    def flow_inputs(self) -> FlowInputs:
+        """Levels of heads, rates of rain and which drains act, as they are set now."""
+
+        def given(kind: NameKind) -> dict[str, float]:
+            names = enumerate(self.names(kind))
+            return {name: self._core.get("enmm_get_inlet_input", c_double, kind, k) for k, name in names}
+
+        drains = {name: value != 0.0 for name, value in given(NameKind.DRAIN).items()}
+        return FlowInputs(given(NameKind.HEAD), given(NameKind.RAIN), drains)
 
     def block_force(self, block: SupportsIndex) -> tuple[float, float, float]:
         """Force x, y (N/m) and moment (N*m/m) that are set on a block now."""
@@ -585,6 +612,25 @@ class Model(Closing):
         of = self._named(NameKind.MONITOR, monitor) if isinstance(monitor, str) else index("monitor", monitor)
         raw = self._core.read("enmm_get_monitor_state", _abi.MonitorState, of)
         return MonitorState(*(getattr(raw, name) for name in MonitorState._fields))
+
+    def head(self, head: str | SupportsIndex) -> InletState:
+        """Water that flows at a head of the case, by its name or its place there. Raises NotFoundError."""
+        return self._inlet_state(NameKind.HEAD, head)
+
+    def rain(self, rain: str | SupportsIndex) -> InletState:
+        """Water that joints take from rain of the case, by its name or its place there. Raises NotFoundError."""
+        return self._inlet_state(NameKind.RAIN, rain)
+
+    def drain(self, drain: str | SupportsIndex) -> InletState:
+        """Water that flows at a drain of the case, by its name or its place there. Raises NotFoundError."""
+        return self._inlet_state(NameKind.DRAIN, drain)
+
+    def _inlet_state(self, kind: NameKind, of: str | SupportsIndex) -> InletState:
+        raw = self._core.read("enmm_get_inlet_state", _abi.InletState, kind, self._inlet(kind, of))
+        return InletState(*(getattr(raw, name) for name in InletState._fields))
+
+    def _inlet(self, kind: NameKind, of: str | SupportsIndex) -> int:
+        return self._named(kind, of) if isinstance(of, str) else index(kind.name.lower(), of)
 
     def _named(self, kind: NameKind, name: str) -> int:
         return number_of(kind.name.lower(), name, {name: k for k, name in enumerate(self.names(kind))})

@@ -79,3 +79,14 @@ class PortInputs(NamedTuple):
     """Pressure on the faces (Pa)."""
     velocity: tuple[float, ...]
     """Velocity x, y (m/s) of the supports, or of the wave that comes in."""
+
+
+class FlowInputs(NamedTuple):
+    """Inputs of water that flows in joints that are set now, by the names of the case."""
+
+    heads: dict[str, float]
+    """Level of each head (m)."""
+    rains: dict[str, float]
+    """Rate of each rain (m/s)."""
+    drains: dict[str, bool]
+    """Whether each drain acts."""

@@ -136,13 +136,23 @@ class Totals(NamedTuple):
     """Bonded length of rock bridges and joints that has broken (m)."""
     broken_joints: int
     """Joints whose last bond has broken."""
+    water_entered: float
+    """Water that has entered joints in dynamic stages, m3 per metre (m2)."""
+    water_left: float
+    """Water that has left joints in dynamic stages, m3 per metre (m2)."""
+    flow_residual: float
+    """Largest imbalance of the flow at a node of the joints (m2/s)."""
+    seepage_height: float
+    """Height of the highest outcrop from which water seeps, of the lowest joint where none does (m)."""
 
 
 class PortState(NamedTuple):
     """A port now.
 
-    A block fills all but the last three values; a boundary displacement, velocity and stress; joints the last three.
-    What is not filled is 0. Motions of a block are those of its mass centroid, of a boundary the mean along it.
+    A block fills all from its displacement to its stress; a boundary displacement, velocity and stress; joints
+    normal_force, shear_force, slip and, in a case with `[flow]`, the water in them; a quiet boundary displacement,
+    velocity and traction; a fixity displacement, velocity and reaction. What is not filled is 0. Motions of a block are
+    those of its mass centroid, of a boundary the mean along it.
     """
 
     displacement_x: float
@@ -181,6 +191,12 @@ class PortState(NamedTuple):
     """Force of the moved supports on the rock per metre, x (N/m)."""
     reaction_y: float
     """Force of the moved supports on the rock per metre, y (N/m)."""
+    water_pressure: float
+    """Mean pressure of the water that flows in the joints (Pa)."""
+    water_pressure_max: float
+    """Largest pressure of the water that flows in the joints (Pa)."""
+    uplift: float
+    """Force of the water that flows in the joints on each of their faces, which pushes them apart (N/m)."""
 
 
 class MonitorState(NamedTuple):
@@ -197,6 +213,17 @@ class MonitorState(NamedTuple):
     """Velocity, x (m/s)."""
     velocity_y: float
     """Velocity, y up (m/s)."""
+
+
+class InletState(NamedTuple):
+    """Water at a head, in rain or at a drain, as the flow was found last."""
+
+    inflow: float
+    """Water that enters joints there, less what leaves them (m2/s)."""
+    outflow: float
+    """Water that leaves joints there, less what enters them (m2/s)."""
+    run_off: float
+    """Rain that joints do not take, 0 at heads and drains (m2/s)."""
 
 
 BLOCK_FIELDS: dict[str, str] = {

@@ -153,6 +153,39 @@ pub extern "C" fn enmm_set_port_displacement(model: *mut enmm_model, port: u32, 
     with_model(model.addr(), |model| Ok(model.inner.set_port_displacement(port as usize, Vector::new(ux, uy))?))
 }
 
+/// Sets the level (m, upwards, in the coordinates of the case) of a `[[head]]`, by its place in the case, from 0;
+/// enmm_find_name finds it by name.
+///
+/// Acts where the flow in joints is found: at the start of static stages, and in dynamic stages with `flow = "steady"`
+/// on the grid of internal steps; else at the same times as enmm_set_gravity. A stage that names the head ends it.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a head that does not exist, a value that is not finite or beyond 1e9 m, or a
+/// model whose flow is held from now on.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_set_head(model: *mut enmm_model, head: u32, level: f64) -> enmm_status {
+    with_model(model.addr(), |model| Ok(model.inner.set_head(head as usize, level)?))
+}
+
+/// Sets the rate (m/s, that is m3/s on each m2 in plan) of a `[[rain]]`, by its place in the case, from 0.
+///
+/// Acts as enmm_set_head.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a rain that does not exist, a value that is not at least 0 and at most 1e-3, or a
+/// model whose flow is held from now on.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_set_rain(model: *mut enmm_model, rain: u32, rate: f64) -> enmm_status {
+    with_model(model.addr(), |model| Ok(model.inner.set_rain(rain as usize, rate)?))
+}
+
+/// Lets a `[[drain]]` act, or not where `is_active` is 0, by its place in the case, from 0. It is a switch: it acts as
+/// enmm_set_head, but never linearly.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a drain that does not exist, or a model whose flow is held from now on.
+#[unsafe(no_mangle)]
+pub extern "C" fn enmm_set_drain(model: *mut enmm_model, drain: u32, is_active: i32) -> enmm_status {
+    with_model(model.addr(), |model| Ok(model.inner.set_drain(drain as usize, is_active != 0)?))
+}
+
 /// Makes all inputs that have been set since the last step act at once from the start of the next one, even where
 /// inputs vary linearly: an anchor is lost. Inputs that are set after this call go their way from there.
 #[unsafe(no_mangle)]
@@ -163,11 +196,11 @@ pub extern "C" fn enmm_jump(model: *mut enmm_model) -> enmm_status {
     })
 }
 
-/// Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block or the
-/// port where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part of saved
-/// states. enmm_set_interpolation sets that of all inputs.
+/// Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block, the port,
+/// the head, the rain or the drain where it has one, `mode` a value of enmm_interpolation. Acts from the next step on,
+/// and is part of saved states. enmm_set_interpolation sets that of all inputs.
 ///
-/// Errors: ENMM_INVALID_ARGUMENT for another number, or a block or port that does not exist.
+/// Errors: ENMM_INVALID_ARGUMENT for another number, or an index that does not exist.
 #[unsafe(no_mangle)]
 pub extern "C" fn enmm_set_input_interpolation(
     model: *mut enmm_model,
@@ -254,6 +287,24 @@ pub unsafe extern "C" fn enmm_get_port_inputs(
             pointers::write_if_wanted(velocity.cast(), own_velocity)
         }
     })
+}
+
+/// Returns what is set at a head (level, m), in rain (rate, m/s) or at a drain (1 where it acts, else 0): `kind` is
+/// ENMM_NAME_HEAD, ENMM_NAME_RAIN or ENMM_NAME_DRAIN, `index` its place in the case.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for another kind or a place that does not exist, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_inlet_input(
+    model: *mut enmm_model,
+    kind: i32,
+    index: u32,
+    value: *mut f64,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::write("value", value, model.inlet_input(kind, index)?) })
 }
 
 /// Sets how inputs vary within a communication step: a value of enmm_interpolation. Acts from the next step on, and is

@@ -3,7 +3,7 @@
 use libc::c_char;
 
 use super::pointers;
-use crate::numbers::enmm_monitor_state;
+use crate::numbers::{enmm_inlet_state, enmm_monitor_state};
 use crate::safe::enter::with_model;
 use crate::types::{enmm_model, enmm_status};
 
@@ -42,6 +42,46 @@ pub unsafe extern "C" fn enmm_name(
 ) -> enmm_status {
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe { pointers::fill_text(&model.name(kind, index)?, out, capacity, written) })
+}
+
+/// Returns the number of the thing of a kind, a value of enmm_name_kind, that has a name: the first one of several.
+///
+/// Errors: ENMM_NOT_FOUND, ENMM_INVALID_ARGUMENT for another kind, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_find_name(
+    model: *mut enmm_model,
+    kind: i32,
+    name: *const c_char,
+    index: *mut u32,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe {
+        let found = model.find_name(kind, pointers::text("name", name)?)?;
+        pointers::write("index", index, found)
+    })
+}
+
+/// Writes the water that enters and leaves joints at a head, in rain or at a drain: `kind` is ENMM_NAME_HEAD,
+/// ENMM_NAME_RAIN or ENMM_NAME_DRAIN, `index` its place in the case. It is that of the flow that was found last.
+/// `out->struct_size` must be set.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for another kind, a place that does not exist or a struct_size that no version had,
+/// ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_inlet_state(
+    model: *mut enmm_model,
+    kind: i32,
+    index: u32,
+    out: *mut enmm_inlet_state,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.inlet_state(kind, index)?, out) })
 }
 
 /// Writes the state of a monitor, by its place among the `[[monitor]]`s of the case. `out->struct_size` must be set.

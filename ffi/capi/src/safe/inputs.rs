@@ -36,7 +36,7 @@ impl Model {
     /// Sets how one input goes through a communication step, by numbers of C.
     ///
     /// # Errors
-    /// A number that no input and no way has, or a block or a port that does not exist.
+    /// A number that no input and no way has, or an index that does not exist.
     pub fn set_interpolation_of(&mut self, input: i32, index: u32, mode: i32) -> Outcome {
         let of = |kind: enmm_input| kind as i32 == input;
         let own = match input {
@@ -46,7 +46,10 @@ impl Model {
             _ if of(enmm_input::ENMM_INPUT_STRENGTH_FACTOR) => Input::StrengthFactor,
             _ if of(enmm_input::ENMM_INPUT_BLOCK) => Input::Block(index),
             _ if of(enmm_input::ENMM_INPUT_PORT) => Input::Port(index),
-            _ => return Err(Failure::invalid(format!("input: is {input}, must be a value of enmm_input, 0 to 5"))),
+            _ if of(enmm_input::ENMM_INPUT_HEAD) => Input::Head(index),
+            _ if of(enmm_input::ENMM_INPUT_RAIN) => Input::Rain(index),
+            _ if of(enmm_input::ENMM_INPUT_DRAIN) => Input::Drain(index),
+            _ => return Err(Failure::invalid(format!("input: is {input}, must be a value of enmm_input, 0 to 8"))),
         };
         Ok(self.inner.set_interpolation_of(own, interpolation(mode)?)?)
     }

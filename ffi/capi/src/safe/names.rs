@@ -4,11 +4,11 @@ use engine::cosimulation::Named;
 
 use super::failure::Failure;
 use super::model::Model;
-use crate::numbers::enmm_monitor_state;
-use crate::types::enmm_name_kind;
+use crate::numbers::{enmm_inlet_state, enmm_monitor_state};
+use crate::types::{enmm_name_kind, enmm_status};
 
 /// Kinds by their numbers.
-const KINDS: [(enmm_name_kind, Named); 7] = [
+const KINDS: [(enmm_name_kind, Named); 10] = [
     (enmm_name_kind::ENMM_NAME_JOINT, Named::Joint),
     (enmm_name_kind::ENMM_NAME_LAW, Named::Law),
     (enmm_name_kind::ENMM_NAME_ROCK, Named::Rock),
@@ -16,6 +16,9 @@ const KINDS: [(enmm_name_kind, Named); 7] = [
     (enmm_name_kind::ENMM_NAME_BLOCK, Named::Block),
     (enmm_name_kind::ENMM_NAME_MONITOR, Named::Monitor),
     (enmm_name_kind::ENMM_NAME_PORT, Named::Port),
+    (enmm_name_kind::ENMM_NAME_HEAD, Named::Head),
+    (enmm_name_kind::ENMM_NAME_RAIN, Named::Rain),
+    (enmm_name_kind::ENMM_NAME_DRAIN, Named::Drain),
 ];
 
 /// The kind of a number.
@@ -42,6 +45,39 @@ impl Model {
     /// An unknown kind, or a number that is too large.
     pub fn name(&self, kind: i32, index: u32) -> Result<String, Failure> {
         Ok(self.inner.name(kind_of(kind)?, index as usize)?)
+    }
+
+    /// Number of the thing of a kind with a name.
+    ///
+    /// # Errors
+    /// An unknown kind, or a name that none has.
+    pub fn find_name(&self, kind: i32, name: &str) -> Result<u32, Failure> {
+        let kind = kind_of(kind)?;
+        let found = self.inner.find_name(kind, name);
+        Ok(found.map_err(|error| Failure::new(enmm_status::ENMM_NOT_FOUND, error.to_string()))? as u32)
+    }
+
+    /// Water at a head, in rain or at a drain.
+    ///
+    /// # Errors
+    /// Another kind, or a number that is too large.
+    pub fn inlet_state(&self, kind: i32, index: u32) -> Result<enmm_inlet_state, Failure> {
+        Ok(enmm_inlet_state::from(&self.inner.inlet(kind_of(kind)?, index as usize)?))
+    }
+
+    /// Level (m) of a head, rate (m/s) of rain, or 1 for a drain that acts, as it is set.
+    ///
+    /// # Errors
+    /// Another kind, or a number that is too large.
+    pub fn inlet_input(&self, kind: i32, index: u32) -> Result<f64, Failure> {
+        let (kind, index) = (kind_of(kind)?, index as usize);
+        self.inner.inlet(kind, index)?;
+        let inputs = self.inner.inputs();
+        Ok(match kind {
+            Named::Head => inputs.head[index],
+            Named::Rain => inputs.rain[index],
+            _ => f64::from(u8::from(inputs.drain[index])),
+        })
     }
 
     /// State of a monitor.

@@ -3,7 +3,7 @@
 use std::ffi::CString;
 
 use enmm::cosimulation::{EventKind, PORT_QUANTITIES, PortState, TOTALS, Totals};
-use enmm::model::{BLOCK_QUANTITIES, ENERGIES, MONITOR_QUANTITIES};
+use enmm::model::{BLOCK_QUANTITIES, ENERGIES, INLET_QUANTITIES, MONITOR_QUANTITIES};
 
 use crate::log::Status;
 use crate::phase::{Call, Phase};
@@ -123,6 +123,9 @@ impl Instance {
                 values[0] = (MONITOR_QUANTITIES[place].get)(&self.model.simulation().monitor(k));
             }
             Quantity::Total(total) => values[0] = self.total(total),
+            Quantity::Inlet(kind, k, place) => {
+                values[0] = (INLET_QUANTITIES[place].get)(&self.model.inlet(kind, k).unwrap_or_default());
+            }
             Quantity::Blocks(place) => {
                 let states = self.model.blocks();
                 let get = BLOCK_QUANTITIES[place].get;
@@ -150,7 +153,10 @@ impl Instance {
             | Quantity::PortPressure(_)
             | Quantity::PortVelocity(..)
             | Quantity::BlockForce(_)
-            | Quantity::BlockMoment => {} // not outputs
+            | Quantity::BlockMoment
+            | Quantity::Head(_)
+            | Quantity::Rain(_)
+            | Quantity::Drain(_) => {} // not outputs
         }
     }
 

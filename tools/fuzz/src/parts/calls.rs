@@ -9,7 +9,9 @@ use crate::random::Random;
 use crate::trace::Trace;
 use enmm_fuzz::abi::{inputs, library, model as life, names, observe, state};
 use enmm_fuzz::buffer::Buffer;
-use enmm_fuzz::numbers::{enmm_block_state, enmm_energies, enmm_monitor_state, enmm_port_state, enmm_totals};
+use enmm_fuzz::numbers::{
+    enmm_block_state, enmm_energies, enmm_inlet_state, enmm_monitor_state, enmm_port_state, enmm_totals,
+};
 use enmm_fuzz::types::{enmm_contact, enmm_event, enmm_model, enmm_state, enmm_status, enmm_step_info};
 
 /// A block on a slab with a port of every kind.
@@ -216,7 +218,7 @@ impl Host {
     fn set(&mut self, model: Model, random: &mut Random, trace: &mut Trace) -> Call {
         let [a, b, c] = [0; 3].map(|_| if random.chance(20) { random.wild() } else { random.between(-100.0, 100.0) });
         let k = random.pick(&[0, 0, 1, 1, 2, 3, u32::MAX]);
-        let which = random.below(11);
+        let which = random.below(14);
         trace.say(|| format!("set {which}: {k} {a:?} {b:?} {c:?}"));
         Ok(match which {
             0 => ("enmm_set_gravity", inputs::enmm_set_gravity(model, a, b)),
@@ -231,6 +233,9 @@ impl Host {
                 let mode = random.pick(&[0, 1, 1, 2, -1, i32::MAX]);
                 ("enmm_set_interpolation", inputs::enmm_set_interpolation(model, mode))
             }
+            9 => ("enmm_set_head", inputs::enmm_set_head(model, k, a)),
+            10 => ("enmm_set_rain", inputs::enmm_set_rain(model, k, 1e-9 * a)),
+            11 => ("enmm_set_drain", inputs::enmm_set_drain(model, k, (a > 0.0).into())),
             _ => {
                 let (ids, values) = ([0, 1, k], [a, b, c]);
                 let n = random.pick(&[0, 1, 2, 3]);
@@ -286,12 +291,13 @@ impl Host {
 
     /// Structures one by one.
     fn one(&mut self, model: Model, random: &mut Random, trace: &mut Trace) -> Call {
-        let which = random.below(4);
+        let which = random.below(5);
         let sizes = [
             size_of::<enmm_energies>(),
             size_of::<enmm_totals>(),
             size_of::<enmm_port_state>(),
             size_of::<enmm_monitor_state>(),
+            size_of::<enmm_inlet_state>(),
         ];
         let (mut buffer, known) = sized(sizes[which], 1, random);
         let (k, is_null) = (random.pick(&[0, 1, 2, 3, u32::MAX]), random.chance(5));
@@ -303,12 +309,13 @@ impl Host {
                 0 => ("energies", observe::enmm_get_energies(model, out.cast())),
                 1 => ("totals", observe::enmm_get_totals(model, out.cast())),
                 2 => ("port state", observe::enmm_get_port_state(model, k, out.cast())),
-                _ => ("monitor state", names::enmm_get_monitor_state(model, k, out.cast())),
+                3 => ("monitor state", names::enmm_get_monitor_state(model, k, out.cast())),
+                _ => ("inlet state", names::enmm_get_inlet_state(model, 7 + (k % 4).cast_signed(), k, out.cast())),
             }
         };
         buffer.check(name, status != OK)?;
         if status == OK && known {
-            finite(name, &buffer.numbers([16, 6, 15, 5][which])[1..])?;
+            finite(name, &buffer.numbers([16, 6, 15, 5, 4][which])[1..])?;
         }
         Ok((name, status))
     }
