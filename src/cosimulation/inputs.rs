@@ -53,7 +53,8 @@ impl Cosimulation {
     }
 
     /// Sets the level (m) of a `[[head]]`, by its place in the case. It acts wherever the flow in the joints is found:
-    /// at the start of static stages, and in dynamic ones with `flow = "steady"`.
+    /// at the start of static stages, and in dynamic ones with `flow = "steady"` or
+    /// `"transient"`.
     ///
     /// # Errors
     /// A value that is not finite or too large, a head that does not exist, or flow that is held from now on.
@@ -100,7 +101,8 @@ impl Cosimulation {
         if self.simulation.follows_flow() {
             return Ok(());
         }
-        let remedy = "add `flow = \"steady\"` to the dynamic stage, or set it before the start";
+        let remedy =
+            "add `flow = \"steady\"` or `flow = \"transient\"` to the dynamic stage, or set it before the start";
         let stage = self.simulation.stage().name.as_str();
         Err(CosimulationError::value(name, format!("set in stage {stage:?}"), "set where the flow is found", remedy))
     }

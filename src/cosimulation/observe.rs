@@ -136,7 +136,7 @@ pub struct ContactCounts {
 
 /// Sums and extremes as outputs show them, but for the energies: the structures of C and Python in this order, and the
 /// FMUs. New ones go to the end.
-pub const TOTALS: [Quantity<Totals>; 19] = [
+pub const TOTALS: [Quantity<Totals>; 20] = [
     Quantity::plain("displacement_max", "m", "Largest displacement of a cover", |totals| totals.displacement_max),
     Quantity::plain("velocity_max", "m/s", "Largest velocity of a cover", |totals| totals.velocity_max),
     Quantity::plain("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
@@ -184,6 +184,9 @@ pub const TOTALS: [Quantity<Totals>; 19] = [
         "Height of the highest outcrop from which water seeps, of the lowest joint where none does",
         |totals| totals.flow.seepage_height,
     ),
+    Quantity::plain("water_stored", "m2", "Water that joints have taken in dynamic stages, m3 per metre", |totals| {
+        totals.flow.stored
+    }),
 ];
 
 impl Cosimulation {

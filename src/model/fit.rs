@@ -320,12 +320,14 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
         (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
     };
-    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed, time, rounds } = seepage;
+    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed, stored, time, rounds } =
+        seepage;
     let Surroundings { level, weight, heads, rains, drains } = surroundings;
     check_sources(model, "seepage.surroundings", (heads, rains, drains))?;
     number("seepage.surroundings.level", *level, LENGTH)?;
     between("seepage.surroundings.weight", *weight, 0.0, FORCE)?;
     passed.iter().try_for_each(|volume| between("seepage.passed", *volume, 0.0, FORCE))?;
+    number("seepage.stored", *stored, FORCE)?;
     length("seepage.apertures", apertures.len(), net.pieces.len())?;
     let within = |aperture: f64| aperture == 0.0 || (net.range[0]..=net.range[1]).contains(&aperture);
     for (k, own) in apertures.iter().enumerate() {

@@ -41,6 +41,8 @@ pub struct JointWater {
 pub struct JointFlow {
     /// Water that has entered and left in dynamic stages (m², that is m³ per metre of depth).
     pub passed: [f64; 2],
+    /// Water that joints have taken in dynamic stages (m²).
+    pub stored: f64,
     /// Greatest imbalance of a node (m²/s).
     pub residual: f64,
     /// Height of the highest outcrop from which water seeps, that of the lowest joint where none does (m).
@@ -63,6 +65,7 @@ impl Simulation {
         let lowest = || net.places.iter().map(|place| place.y).fold(f64::INFINITY, f64::min);
         JointFlow {
             passed: seepage.passed,
+            stored: seepage.stored,
             residual: balance.map_or(0.0, |balance| balance.residual),
             seepage_height: balance.and_then(|balance| balance.seeps).unwrap_or_else(lowest),
         }

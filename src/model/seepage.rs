@@ -32,9 +32,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Finds the steady flow again before an internal step where it is due, and something around the net has changed:
-    /// before the first step of a static stage, whose inputs a host may have set, and on the grid of a dynamic stage
-    /// that follows them. The apertures are those of the start of the last static stage.
+    /// Finds the flow again before an internal step where it is due: before the first step of a static stage, whose
+    /// inputs a host may have set, and on the grid of a dynamic stage that follows them. The steady one is found if
+    /// something around the net has changed; one that goes on in time does so up to the next such step, with what is
+    /// around it now. The apertures are those of the start of the last static stage.
     ///
     /// # Errors
     /// No flow has been found.
@@ -50,22 +51,20 @@ impl Simulation {
         if !is_due || state.part != 0.0 {
             return Ok(());
         }
-        let time = self.time();
-        let seen = Seen { model, state, net, stage: state.stage as usize, start: time, way: None };
-        let is_found = seepage.balances.last().is_some_and(|balance| balance.stage == state.stage);
-        if is_found && seen.are_as(&seepage.surroundings) {
-            return Ok(());
+        let seen = Seen { model, state, net, stage: state.stage as usize, start: self.time(), way: None };
+        let steps = stage.flow_steps().filter(|_| stage.is_transient());
+        let span = steps.map(|every| every as f64 * model.dt * self.case.pace());
+        let found = seen.again(seepage, stage.flow_steps().is_some(), span).map_err(|failure| seen.failed(failure))?;
+        if found.is_some() {
+            self.state.seepage = found;
         }
-        let start = stage.flow_steps().map(|_| &seepage.unknowns[..]);
-        let found = seen.steady(seepage.apertures.clone(), start);
-        self.state.seepage = Some(found.map_err(|failure| seen.failed(failure))?);
         Ok(())
     }
 
-    /// Lets water flow for a time (s) of a dynamic stage.
+    /// Lets water flow for a time (s) of a dynamic stage, if its flow is not one that goes on in steps of its own.
     pub(super) fn pass_water(&mut self, dt: f64) {
-        let is_dynamic = matches!(self.regime, Regime::Dynamic { .. });
-        self.state.seepage.iter_mut().filter(|_| is_dynamic).for_each(|seepage| seepage.pass(dt));
+        let passes = matches!(self.regime, Regime::Dynamic { .. }) && !self.stage().is_transient();
+        self.state.seepage.iter_mut().filter(|_| passes).for_each(|seepage| seepage.pass(dt));
     }
 
     /// Whether what hosts set of heads, rain and drains has an effect now or in a later stage.
@@ -187,9 +186,26 @@ impl Seen<'_> {
             surroundings: self.surroundings(),
             balances: earlier.cloned().chain([own]).collect(),
             passed: before.map_or([0.0; 2], |seepage| seepage.passed),
+            stored: before.map_or(0.0, |seepage| seepage.stored),
             time: before.map_or(0.0, |seepage| seepage.time),
             rounds: Vec::new(),
         })
+    }
+
+    /// Flow that follows one of before: that which has gone on for a span of time (s), or the steady one; none if that
+    /// of before still is. The steady one is looked for from unknowns of before if it `is_near`. What hosts set before
+    /// the first step of all belongs to the flow at its start.
+    fn again(&self, before: &Seepage, is_near: bool, span: Option<f64>) -> Result<Option<Seepage>, Failure> {
+        let is_found = before.balances.last().is_some_and(|balance| balance.stage == self.state.stage);
+        let steady = || {
+            let start = is_near.then_some(&before.unknowns[..]);
+            self.steady(before.apertures.clone(), start).map(Some)
+        };
+        let is_new = !is_found || !self.are_as(&before.surroundings);
+        let is_first = self.state.stage == 0 && self.state.stage_step == 0;
+        let Some(span) = span else { return if is_new { steady() } else { Ok(None) } };
+        let start = if is_first && is_new { steady()? } else { None };
+        self.further(span, start.as_ref().unwrap_or(before)).map(Some)
     }
 
     /// Unit weight of the water (N/m³).
@@ -304,7 +320,7 @@ impl Seen<'_> {
     }
 
     /// Whether both blocks of a piece are there.
-    fn is_there(&self, piece: &FlowPiece) -> bool {
+    pub fn is_there(&self, piece: &FlowPiece) -> bool {
         piece.edges.iter().all(|&edge| !self.is_gone(edge))
     }
 

@@ -1,4 +1,4 @@
-//! Flow in the joints that takes a time, between two static stages.
+//! Flow in the joints that takes a time: between two static stages, and as a dynamic stage goes on.
 
 use enmm_seepage::{Failure, Storage, law};
 
@@ -6,7 +6,7 @@ use crate::flow::FlowPiece;
 use crate::state::{FlowBalance, Seepage, StageWater};
 
 use super::Simulation;
-use super::case::{FlowTime, StageKind};
+use super::case::{FlowTime, Stage, StageKind};
 use super::seepage::Seen;
 
 /// Bulk modulus of water (Pa).
@@ -15,14 +15,15 @@ const BULK: f64 = 2.2e9;
 const DRAINED: f64 = 0.05;
 
 impl Simulation {
-    /// A doubt about the stage in progress: its joints still drain or fill when its time of flow has passed, and no
-    /// later stage goes on with it.
+    /// A doubt about the static stage in progress: its joints still drain or fill when its time of flow has passed, and
+    /// no later stage goes on with it.
     pub fn unfinished_drainage(&self) -> Option<String> {
         let (stage, seepage) = (self.state().stage as usize, self.state().seepage.as_ref()?);
         let balance = seepage.balances.last().filter(|balance| balance.stage as usize == stage)?;
         let StageWater { time, drains, .. } = balance.water.as_ref()?;
-        let mut later = self.case().stages[stage + 1..].iter();
-        if later.any(|next| next.kind == StageKind::Static && next.flow_time().is_some()) {
+        let goes_on =
+            |next: &Stage| next.kind == StageKind::Static && next.flow_time().is_some() || next.is_transient();
+        if self.stage().kind == StageKind::Dynamic || self.case().stages[stage + 1..].iter().any(goes_on) {
             return None;
         }
         let [enters, leaves] = [0, 1].map(|side| balance.sums.iter().map(|sum| sum[side]).sum::<f64>());
@@ -38,55 +39,128 @@ impl Simulation {
     }
 }
 
+/// A flow that goes on in time through apertures that stay.
+struct Course {
+    apertures: Vec<[f64; 2]>,
+    conductance: Vec<f64>,
+    volume: Vec<f64>,
+    compliance: Vec<f64>,
+    unknowns: Vec<f64>,
+    flooded: Vec<bool>,
+    /// Water (m²) in the joints now.
+    holds: f64,
+    /// Means of the last step.
+    sums: Vec<[f64; 3]>,
+    seeps: Option<f64>,
+    /// Greatest imbalance of a node so far (m²/s).
+    residual: f64,
+    water: StageWater,
+}
+
+impl Course {
+    /// A course from unknowns (m) through apertures (m), on with the water that the stage has had so far.
+    fn begin(
+        seen: &Seen,
+        apertures: Vec<[f64; 2]>,
+        unknowns: &[f64],
+        so_far: Option<&StageWater>,
+    ) -> Result<Self, Failure> {
+        let (conductance, (volume, compliance)) = (seen.conductance(&apertures), seen.room(&apertures));
+        let none = || StageWater { time: 0.0, sums: vec![[0.0; 3]; seen.net.inlet_count()], stored: 0.0, drains: 0.0 };
+        let mut course = Self {
+            apertures,
+            conductance,
+            volume,
+            compliance,
+            unknowns: unknowns.to_vec(),
+            flooded: Vec::new(),
+            holds: 0.0,
+            sums: Vec::new(),
+            seeps: None,
+            residual: 0.0,
+            water: so_far.cloned().unwrap_or_else(none),
+        };
+        course.holds = course.held(seen)?;
+        Ok(course)
+    }
+
+    fn storage(&self) -> Storage<'_> {
+        Storage { volume: &self.volume, compliance: &self.compliance }
+    }
+
+    fn held(&self, seen: &Seen) -> Result<f64, Failure> {
+        let waters = seen.net.net.stored(self.storage(), &self.unknowns)?;
+        Ok(waters.iter().fold(0.0, |sum, water| sum + water))
+    }
+
+    /// Goes on by an implicit step (s).
+    fn go(&mut self, seen: &Seen, step: f64) -> Result<(), Failure> {
+        self.flooded = seen.flooded();
+        let conditions = seen.conditions(&self.flooded, &self.conductance);
+        let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
+        let flow = seen.net.net.advance(&self.conductance, &at_nodes, self.storage(), &self.unknowns, step)?;
+        (self.sums, self.seeps) = (seen.net.sums(&conditions, &flow), seen.net.seeps(&conditions, &flow));
+        self.residual = self.residual.max(flow.residual);
+        let sums = self.water.sums.as_flattened_mut().iter_mut().zip(self.sums.as_flattened());
+        sums.for_each(|(total, rate)| *total += rate * step);
+        self.unknowns = flow.u;
+        let now = self.held(seen)?;
+        (self.water.drains, self.holds) = ((self.holds - now) / step, now);
+        Ok(())
+    }
+
+    /// The flow to which it has come from one of before.
+    fn end(self, seen: &Seen, before: &Seepage, time: f64) -> Seepage {
+        let stage = seen.stage as u32;
+        let Self { sums, seeps, residual, water, .. } = self;
+        let own = FlowBalance { stage, sums, residual, seeps, water: Some(water), rounds: None };
+        let earlier = before.balances.iter().filter(|balance| balance.stage != stage);
+        Seepage {
+            unknowns: self.unknowns,
+            conducts: self.conductance.iter().map(|g| *g > 0.0).collect(),
+            apertures: self.apertures,
+            flooded: self.flooded,
+            surroundings: seen.surroundings(),
+            balances: earlier.cloned().chain([own]).collect(),
+            passed: before.passed,
+            stored: before.stored,
+            time: before.time + time,
+            rounds: Vec::new(),
+        }
+    }
+}
+
 impl<'a> Seen<'a> {
     /// Flow that goes on from one of before, in implicit steps, while levels, heads and rain go evenly to those of the
     /// stage. Apertures stay as they are at its start.
     pub(super) fn over(&self, of_stage: &FlowTime, before: &'a Seepage) -> Result<Seepage, Failure> {
-        let net = &self.net.net;
-        let apertures = self.opened();
-        let conductance = self.conductance(&apertures);
-        let (volume, compliance) = self.room(&apertures);
-        let storage = Storage { volume: &volume, compliance: &compliance };
-        let held = |u: &[f64]| net.stored(storage, u).map(|waters| waters.iter().fold(0.0, |sum, water| sum + water));
-        let step = of_stage.time / f64::from(of_stage.steps);
-        let start = held(&before.unknowns)?;
-        let (mut unknowns, mut flooded, mut holds) = (before.unknowns.clone(), Vec::new(), start);
-        let mut own = FlowBalance {
-            stage: self.stage as u32,
-            sums: Vec::new(),
-            residual: 0.0,
-            seeps: None,
-            water: None,
-            rounds: None,
-        };
-        let mut water =
-            StageWater { time: of_stage.time, sums: vec![[0.0; 3]; self.net.inlet_count()], stored: 0.0, drains: 0.0 };
+        let mut course = Course::begin(self, self.opened(), &before.unknowns, None)?;
+        let (step, start) = (of_stage.time / f64::from(of_stage.steps), course.holds);
         for k in 1..=of_stage.steps {
             let here = Self { way: Some((before, f64::from(k) / f64::from(of_stage.steps))), ..*self };
-            flooded = here.flooded();
-            let conditions = here.conditions(&flooded, &conductance);
-            let at_nodes: Vec<_> = conditions.iter().map(|condition| condition.0).collect();
-            let flow = net.advance(&conductance, &at_nodes, storage, &unknowns, step)?;
-            (own.sums, own.seeps) = (self.net.sums(&conditions, &flow), self.net.seeps(&conditions, &flow));
-            own.residual = own.residual.max(flow.residual);
-            let sums = water.sums.as_flattened_mut().iter_mut().zip(own.sums.as_flattened());
-            sums.for_each(|(total, rate)| *total += rate * step);
-            let now = held(&flow.u)?;
-            (water.drains, holds, unknowns) = ((holds - now) / step, now, flow.u);
+            course.go(&here, step)?;
         }
-        water.stored = holds - start;
-        own.water = Some(water);
-        Ok(Seepage {
-            unknowns,
-            conducts: conductance.iter().map(|g| *g > 0.0).collect(),
-            apertures,
-            flooded,
-            surroundings: self.surroundings(),
-            balances: before.balances.iter().cloned().chain([own]).collect(),
-            passed: before.passed,
-            time: before.time + of_stage.time,
-            rounds: Vec::new(),
-        })
+        (course.water.time, course.water.stored) = (of_stage.time, course.holds - start);
+        Ok(course.end(self, before, of_stage.time))
+    }
+
+    /// Flow that goes on from one of before by an implicit step (s), in a dynamic stage, with levels, heads and rain of
+    /// now and the apertures of before.
+    pub(super) fn further(&self, step: f64, before: &Seepage) -> Result<Seepage, Failure> {
+        let pieces = self.net.pieces.iter().zip(&before.apertures);
+        let apertures = pieces.map(|(piece, own)| if self.is_there(piece) { *own } else { [0.0; 2] }).collect();
+        let last = before.balances.last().filter(|balance| balance.stage as usize == self.stage);
+        let so_far = last.and_then(|balance| balance.water.as_ref());
+        let mut course = Course::begin(self, apertures, &before.unknowns, so_far)?;
+        let start = course.holds;
+        course.go(self, step)?;
+        let taken = course.holds - start;
+        (course.water.time, course.water.stored) = (course.water.time + step, course.water.stored + taken);
+        let mut after = course.end(self, before, step);
+        let rates = after.rates();
+        after.passed.iter_mut().zip(rates).for_each(|(passed, rate)| *passed += rate * step);
+        after.stored += taken;
+        Ok(after)
     }
 
     /// Volume (m²) and compliance (m² per m of head) of each piece with apertures (m) at its nodes, with the rock

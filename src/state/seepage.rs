@@ -20,14 +20,16 @@ pub struct Seepage {
     pub balances: Vec<FlowBalance>,
     /// Water (m², that is m³ per metre of depth) that has entered and left in dynamic stages.
     pub passed: [f64; 2],
-    /// Time (s) of the flow so far, in static stages that give it one.
+    /// Water (m²) that joints have taken in dynamic stages.
+    pub stored: f64,
+    /// Time (s) of the flow so far, in static stages that give it one and in dynamic ones in which it goes on.
     pub time: f64,
     /// The last rounds in which openings make apertures, the oldest first; none in a stage whose apertures stay.
     pub rounds: Vec<Round>,
 }
 
 clone_without_allocating! {
-    Seepage { unknowns conducts apertures flooded surroundings balances passed time rounds }
+    Seepage { unknowns conducts apertures flooded surroundings balances passed stored time rounds }
 }
 
 /// Apertures with which a flow was found, and how far from them openings were when the rock was at rest.
@@ -63,10 +65,12 @@ impl Seepage {
         [0, 1].map(|side| sums.iter().map(|sum| sum[side]).sum())
     }
 
-    /// Lets time (s) pass.
+    /// Lets time (s) pass, in which the flow stays as it is.
     pub fn pass(&mut self, dt: f64) {
         let rates = self.rates();
         self.passed.iter_mut().zip(rates).for_each(|(passed, rate)| *passed += rate * dt);
+        let drains = self.balances.last().and_then(|balance| balance.water.as_ref()).map_or(0.0, |water| water.drains);
+        self.stored -= drains * dt;
     }
 }
 
@@ -101,13 +105,13 @@ pub struct FlowBalance {
     pub residual: f64,
     /// Height (m) of the highest outcrop from which water seeps; none where none does.
     pub seeps: Option<f64>,
-    /// Water of a stage whose flow has a time; `sums` are the means of its last step then.
+    /// Water of a stage whose flow takes time; `sums` are the means of its last step then.
     pub water: Option<StageWater>,
     /// Rounds of openings and flow, of a stage whose apertures follow openings.
     pub rounds: Option<Rounds>,
 }
 
-/// Water of a stage whose flow has a time.
+/// Water of a stage whose flow takes time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageWater {
     /// Time (s).

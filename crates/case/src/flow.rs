@@ -40,6 +40,13 @@ pub(crate) const EVERY: Rule = Range::from(1.0).to(1e6).of(NUMBER).hint("1 finds
 /// The same where a case names none.
 const EVERY_DEFAULT: u32 = 10;
 
+/// Seconds of flow in a second of motion.
+const PACE: Rule = Range::above(0.0)
+    .to(1e12)
+    .of(NUMBER)
+    .usual([1.0, 1e8], "a day in 10 s of motion is 8640")
+    .hint("a day in 10 s of motion is 8640; leave it out for flow in the time of the motion");
+
 /// Least and greatest aperture over those of the laws, where a case names none.
 const NARROWEST: f64 = 0.1;
 const WIDEST: f64 = 20.0;
@@ -77,6 +84,10 @@ keys! {
             Range::from(0.0).to(10.0).of(METRE).hint("the porosity of the rock times half the spacing of its joints")
                 .usual([1e-6, 0.3], "rock with a porosity of 0.5 % and joints 1 m apart has 2.5e-3 m").label("Storage")
                 .none_at_zero(),
+        /// Seconds of flow in a second of motion, in dynamic stages with `flow = "transient"`: the drawdown of a day
+        /// takes 10 s of motion with 8640; default: 1.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub pace: Option<f64> => PACE,
     }
 }
 
@@ -149,6 +160,9 @@ words! {
         Hold = "hold",
         /// The steady flow is found again and again, through the apertures of before.
         Steady = "steady",
+        /// The flow goes on in time, through the apertures of before, while joints and the rock beside them drain and
+        /// fill.
+        Transient = "transient",
     }
 }
 
@@ -170,7 +184,9 @@ impl<'de> Deserialize<'de> for StageFlow {
             type Value = StageFlow;
 
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("\"hold\", \"steady\" or a time of flow such as { time = 86400.0, steps = 24 }")
+                f.write_str(
+                    "\"hold\", \"steady\", \"transient\" or a time of flow such as { time = 86400.0, steps = 24 }",
+                )
             }
 
             fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<StageFlow, E> {
@@ -192,14 +208,36 @@ impl Stage {
         Some(time)
     }
 
-    /// Internal steps after which a dynamic stage finds the steady flow again; none in stages that hold it.
+    /// Internal steps after which a dynamic stage finds the flow again; none in stages that hold it.
     pub fn flow_steps(&self) -> Option<u64> {
-        let is_steady = self.flow == Some(StageFlow::InMotion(FlowInMotion::Steady));
-        (is_steady && self.kind == StageKind::Dynamic).then(|| self.flow_every.unwrap_or(EVERY_DEFAULT).into())
+        let follows = self.is_in_motion(FlowInMotion::Steady) || self.is_transient();
+        follows.then(|| self.flow_every.unwrap_or(EVERY_DEFAULT).into())
+    }
+
+    /// Whether flow goes on in time as a dynamic stage does.
+    pub fn is_transient(&self) -> bool {
+        self.is_in_motion(FlowInMotion::Transient)
+    }
+
+    fn is_in_motion(&self, flow: FlowInMotion) -> bool {
+        self.kind == StageKind::Dynamic && self.flow == Some(StageFlow::InMotion(flow))
     }
 }
 
 impl Case {
+    /// Seconds of flow in a second of motion.
+    pub fn pace(&self) -> f64 {
+        self.flow.as_ref().and_then(|flow| flow.pace).unwrap_or(1.0)
+    }
+
+    /// Keeps the first stages, and of the pace of flow what has an effect in them.
+    pub fn keep_stages(&mut self, count: usize) {
+        self.stages.truncate(count);
+        if !self.stages.iter().any(Stage::is_transient) {
+            self.flow.iter_mut().for_each(|flow| flow.pace = None);
+        }
+    }
+
     /// Hydraulic aperture (m) at the start of the joints of a law, by its name; 0 for one that does not conduct, none
     /// where neither the law nor `[flow]` says so. Construction joints are closed.
     pub fn aperture(&self, name: &str, law: &JointLaw) -> Option<f64> {

@@ -80,11 +80,12 @@ keys! {
         /// of the stage before; default: the steady flow; not in the first stage, before which there is none. Dynamic:
         /// `"hold"` (default) keeps the pressures of water in joints as the last static stage
         /// found them, `"steady"` finds the steady flow again and again, through the apertures that it had there, as
-        /// levels, heads, rain and drains follow a host or this stage.
+        /// levels, heads, rain and drains follow a host or this stage, and `"transient"` lets it go on in time from
+        /// that of before, by the `pace` of `[flow]`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub flow: Option<StageFlow>,
-        /// Dynamic, with `flow = "steady"`: the flow is found at the start of the stage and after every so many
-        /// internal steps; default: 10.
+        /// Dynamic, with `flow = "steady"` or `"transient"`: the flow is found at the start of the stage and after
+        /// every so many internal steps; default: 10.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub flow_every: Option<u32> => EVERY,
         /// Levels (m) of heads by the name of their `[[head]]`, from the start of this stage on; not in the first

@@ -45,7 +45,7 @@ pub fn up_to_stage(case: &Case, stage: Option<&str>) -> Result<Case, String> {
             names.join(", ")
         )
     })?;
-    case.stages.truncate(place + 1);
+    case.keep_stages(place + 1);
     Ok(case)
 }
 

@@ -754,7 +754,7 @@ const FIRST_TOTALS: [&str; 27] = [
 ];
 
 /// Outputs of the whole model that those cases have in which water flows in joints.
-const FLOW_TOTALS: [&str; 4] = ["water_entered", "water_left", "flow_residual", "seepage_height"];
+const FLOW_TOTALS: [&str; 5] = ["water_entered", "water_left", "flow_residual", "seepage_height", "water_stored"];
 
 /// Outputs of the whole model by their place.
 struct Rowed {

@@ -22,6 +22,7 @@ pub fn validate_flow(root: &Key, case: &Case) -> Check {
     let key = root.field("flow");
     flow.check(&key)?;
     validate_apertures(root, flow, case)?;
+    validate_pace(&key, flow, case)?;
     if [case.gravity.x, case.gravity.y] == [0.0; 2] {
         return fail(&key, "needs gravity, which drives the water, and the case has 0 m/s²; add it or remove [flow]");
     }
@@ -36,6 +37,16 @@ pub fn validate_flow(root: &Key, case: &Case) -> Check {
         return fail(&key, message);
     }
     refuse_other_blocks(&key, case)
+}
+
+/// Checks that the pace of flow has an effect.
+fn validate_pace(key: &Key, flow: &Flow, case: &Case) -> Check {
+    let Some(pace) = flow.pace.filter(|_| !case.stages.iter().any(Stage::is_transient)) else { return Ok(()) };
+    let message = format!(
+        "is {}, and has no effect without a dynamic stage with `flow = \"transient\"`; add one, or remove it",
+        Plain(pace)
+    );
+    fail(&key.field("pace"), message)
 }
 
 fn validate_head(key: &Key, head: &Head) -> Check {
@@ -191,7 +202,7 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
         }
         if stage.kind == StageKind::Dynamic && stage.flow_steps().is_none() {
             let message = "is in a dynamic stage, which holds the water pressures of the stage before; give it in a \
-                           static stage, or add `flow = \"steady\"`";
+                           static stage, or add `flow = \"steady\"` or `flow = \"transient\"`";
             return fail(&own, message);
         }
     }
@@ -202,7 +213,10 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
 /// Checks how water in joints goes on in a stage.
 fn validate_course(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
     if let Some(every) = stage.flow_every.filter(|_| stage.flow_steps().is_none()) {
-        let message = format!("is {every}, and has no effect without `flow = \"steady\"`; add that, or remove it");
+        let message = format!(
+            "is {every}, and has no effect without `flow = \"steady\"` or `flow = \"transient\"`; add one of both, or \
+             remove it"
+        );
         return fail(&key.field("flow_every"), message);
     }
     let Some(flow) = stage.flow else { return Ok(()) };
@@ -222,8 +236,8 @@ fn validate_course(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check
         StageFlow::InMotion(_) => Ok(()),
         StageFlow::Over(_) if stage.kind == StageKind::Dynamic => fail(
             &key,
-            "has a time, but only static stages have it and this one is dynamic; write `flow = \"steady\"`, or \
-             remove it",
+            "has a time, but only static stages have it and this one is dynamic; write \
+             `flow = \"transient\"`, or remove it",
         ),
         StageFlow::Over(_) if place == 0 => fail(
             &key,

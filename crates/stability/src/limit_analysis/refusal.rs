@@ -34,7 +34,7 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
         return Err(refused(Key::root().field("stage").index(0).field("kind"), message));
     }
     let mut warnings = Vec::from_iter(left_out_stages(&case));
-    case.stages.truncate(count);
+    case.keep_stages(count);
     case.refuse_cuts("limit analysis")?;
     if !case.base_motions.is_empty() {
         warnings.push("base motion is left out: give a seismic coefficient as a load of kind body".into());

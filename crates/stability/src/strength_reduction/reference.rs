@@ -116,7 +116,7 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
         });
     }
     warnings.extend(left_out_stages(&case));
-    case.stages.truncate(count);
+    case.keep_stages(count);
     if !case.base_motions.is_empty() || case.quiets.iter().any(|quiet| quiet.wave.is_some()) {
         warnings.push("base motion and waves are left out: give a seismic coefficient as a load of kind body".into());
         case.base_motions.clear();
