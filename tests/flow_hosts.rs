@@ -1,11 +1,13 @@
 //! Claims: heads, rain and drains that a host sets move the water in joints in dynamic stages that follow them, with
 //! the pressures and flows of hand calculations, and the same bits by communication steps, returns, bytes and threads;
-//! what enters leaves; a flow that is held refuses them.
+//! what enters leaves; a flow that is held refuses them. A flow that goes on in time lags behind them at its pace, as
+//! by hand, and what enters has left or is in the joints.
 
 use allocation_counter::measure;
 
 use enmm::cosimulation::{Cosimulation, CosimulationError, Input, Interpolation, Named};
-use enmm::model::Seepage;
+use enmm::model::bytes::{Keeper, decode, encode};
+use enmm::model::{Seepage, Simulation, State};
 
 use crate::common::{case, refusal, run_stage, simulation, step};
 
@@ -22,12 +24,13 @@ const END: f64 = 80.0 * STEP;
 
 /// A dam on a joint, with a joint in it that takes rain, a drain that does not act yet, and a dynamic stage.
 fn dam(size: f64, course: &str) -> String {
+    let stored = if course.contains("transient") { STORES } else { "" };
     format!(
         "title = \"dam\"\n[domain]\noutline = [[0, 0], [20, 0], [20, 9], [0, 9]]\n[mesh]\nsize = {size:?}\n\
          origin = [0.131, 0.077]\n[[joint]]\npoints = [[0, 3], [20, 3]]\n[[joint]]\npoints = [[12, 3], [12, 9]]\n\
          [rock.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n[joint_law.joint]\nfriction_deg = 40\n[[fix]]\n\
          edge = [[0, 0], [20, 0]]\n[[fix]]\nedge = [[0, 3], [0, 9]]\n[flow]\naperture = 1e-4\naperture_min = 1e-4\n\
-         aperture_max = 1e-4\n[[head]]\nname = \"heel\"\nedge = [[0, 0], [0, 9]]\nlevel = 9.0\n[[head]]\n\
+         aperture_max = 1e-4\n{stored}[[head]]\nname = \"heel\"\nedge = [[0, 0], [0, 9]]\nlevel = 9.0\n[[head]]\n\
          name = \"toe\"\nedge = [[20, 0], [20, 9]]\nlevel = 4.0\n[[rain]]\nname = \"crest\"\n\
          edge = [[0, 9], [20, 9]]\nrate = 0.0\n[[drain]]\nname = \"row\"\npoints = [[5, 3], [5, 6]]\nactive = false\n\
          [[port]]\nname = \"base\"\njoint = [[0, 3], [20, 3]]\n[[stage]]\nname = \"rest\"\nkind = \"static\"\n\
@@ -36,6 +39,11 @@ fn dam(size: f64, course: &str) -> String {
 }
 
 const FOLLOWS: &str = "flow = \"steady\"\nflow_every = 4\n";
+
+/// Lets the flow go on in time.
+const LAGS: &str = "flow = \"transient\"\nflow_every = 4\n";
+/// The joint in the dam then fills and drains in some 4 hours, which are 74 ms of motion.
+const STORES: &str = "storage = 2.5e-3\npace = 2e5\n";
 
 /// Finds the flow before each internal step.
 const AT_ONCE: &str = "flow = \"steady\"\nflow_every = 1\n";
@@ -164,11 +172,12 @@ fn driven(h: f64, course: &str) -> Cosimulation {
 fn the_flow_has_the_same_bits_in_any_communication_steps() {
     let whole = driven(END, FOLLOWS);
     assert!(seepage(&whole).passed[0] > 0.0);
-    for h in [0.05 * END, 0.025 * END, STEP / 8.0] {
-        let parts = driven(h, FOLLOWS);
+    for (course, h) in [FOLLOWS, LAGS].iter().flat_map(|c| [0.5, 0.05, 0.025, 1.0 / 640.0].map(|h| (c, h * END))) {
+        let (whole, parts) = (driven(END, course), driven(h, course));
         assert_eq!(parts.block_states(), whole.block_states(), "steps of {h} s");
         assert_eq!(seepage(&parts), seepage(&whole));
         assert_eq!(parts.port_state(0), whole.port_state(0));
+        assert_eq!(parts.totals(), whole.totals());
     }
     // Another grid is another flow on its way, and the same one in the end.
     let fine = driven(END, AT_ONCE);
@@ -199,7 +208,11 @@ fn entered_less_left_is_nothing_in_steady_flow() {
 
 #[test]
 fn returns_and_bytes_have_the_same_bits() {
-    let mut model = driven(STEP, FOLLOWS);
+    [FOLLOWS, LAGS].into_iter().for_each(assert_goes_on);
+}
+
+fn assert_goes_on(course: &str) {
+    let mut model = driven(STEP, course);
     // Between two points of the grid, with a head on its way.
     good(model.set_interpolation_of(Input::Head(0), Interpolation::Linear));
     good(model.set_head(0, 8.0));
@@ -220,7 +233,7 @@ fn returns_and_bytes_have_the_same_bits() {
     }
     model.restore(&before).unwrap_or_else(|e| panic!("{e}"));
     assert!(again(&mut model) == end, "returned");
-    let mut other = host(FOLLOWS);
+    let mut other = host(course);
     let read = other.deserialize(&saved).unwrap_or_else(|e| panic!("{e}"));
     other.restore(&read).unwrap_or_else(|e| panic!("{e}"));
     assert!(again(&mut other) == end, "from bytes");
@@ -228,8 +241,8 @@ fn returns_and_bytes_have_the_same_bits() {
 
 #[test]
 fn threads_do_not_change_the_bits() {
-    let run = |threads| {
-        let text = dam(0.22, FOLLOWS).replace("duration = 0.3", "duration = 0.002");
+    let run = |course, threads| {
+        let text = dam(0.22, course).replace("duration = 0.3", "duration = 0.002");
         let mut model = Cosimulation::new(case(&text)).unwrap_or_else(|e| panic!("{e}"));
         assert!(model.simulation().model().covers.cover_count() > enmm::internals::step::THREADS_FROM);
         good(model.set_threads(threads));
@@ -238,7 +251,8 @@ fn threads_do_not_change_the_bits() {
         good(model.do_step(0.0, 20.0 * model.internal_step()));
         bytes(&model)
     };
-    assert!(run(1) == run(2));
+    assert!(run(FOLLOWS, 1) == run(FOLLOWS, 2));
+    assert!(run(LAGS, 1) == run(LAGS, 2));
 }
 
 #[test]
@@ -298,15 +312,29 @@ fn keys_of_a_stage_that_make_no_sense_are_refused() {
     let text = dam(1.3, FOLLOWS);
     for (old, new, wanted) in [
         ("flow_every = 4", "flow_every = 0", "stage[1].flow_every: is 0, must be at least 1"),
-        ("flow = \"steady\"\n", "", "stage[1].flow_every: is 4, and has no effect without `flow = \"steady\"`"),
+        ("flow = \"steady\"\n", "", "stage[1].flow_every: is 4, and has no effect without `flow = \"steady\"` or"),
+        ("[flow]\n", "[flow]\npace = 10\n", "flow.pace: is 10, and has no effect without a dynamic stage with"),
         ("flow = \"steady\"", "flow = \"hold\"", "stage[1].flow_every: is 4"),
-        ("flow = \"steady\"", "flow = \"still\"", "is \"still\", must be one of hold, steady"),
-        ("flow = \"steady\"", "flow = 3", "must be one of the strings hold, steady, or a table"),
+        ("flow = \"steady\"", "flow = \"still\"", "is \"still\", must be one of hold, steady, transient"),
+        ("flow = \"steady\"", "flow = 3", "must be one of the strings hold, steady, transient, or a table"),
         ("duration = 0.3\n", "duration = 0.3\nflow = \"steady\"\n", "stage[0].flow: is \"steady\", but only dynamic"),
         ("flow_every = 4", "rain = { fog = 1e-9 }", "fog"),
     ] {
         assert!(text.contains(old), "{old}");
         let told = refusal(&text.replacen(old, new, 1));
+        assert!(told.contains(wanted), "{told} instead of {wanted}");
+    }
+    let lags = dam(1.3, LAGS);
+    for (old, new, wanted) in [
+        ("pace = 2e5", "pace = 0.0", "flow.pace: is 0, must be greater than 0"),
+        (
+            "duration = 0.3\n",
+            "duration = 0.3\nflow = \"transient\"\n",
+            "stage[0].flow: is \"transient\", but only dynamic",
+        ),
+        ("flow_every = 4", "flow_every = 0", "stage[1].flow_every: is 0, must be at least 1"),
+    ] {
+        let told = refusal(&lags.replacen(old, new, 1));
         assert!(told.contains(wanted), "{told} instead of {wanted}");
     }
     let held = dam(1.3, "heads = { toe = 5.0 }\n");
@@ -327,14 +355,164 @@ fn a_step_in_which_nothing_around_the_joints_has_changed_allocates_nothing() {
 /// No host can set such rain; a solver that fails has no other cause that a test could make.
 #[test]
 fn a_flow_that_is_not_found_ends_the_step_with_its_place() {
-    let mut model = simulation(&dam(1.3, FOLLOWS));
-    run_stage(&mut model);
+    for course in [FOLLOWS, LAGS] {
+        let mut model = simulation(&dam(1.3, course));
+        run_stage(&mut model);
+        assert!(model.next_stage().expect("a stage"));
+        let before = model.state().clone();
+        let drive = model.drive();
+        (drive.from.rain[0], drive.to.rain[0]) = (-1.0, -1.0);
+        let told = model.advance(false).expect_err("no such rain").to_string();
+        assert!(told.contains("at (12.000, 9.000) m") && told.contains("rate"), "{told}");
+        assert!(told.contains("apertures differ less"), "{told}");
+        assert_eq!((model.state().stage_step, &model.state().seepage), (0, &before.seepage));
+    }
+}
+
+/// A crack of 5 mm, 20 m high, that a joint of 0.1 mm and 10 m drains at its foot, where the head falls by 16 m as a
+/// dynamic stage begins; the crack drains to 1/e in 500 s of flow and more.
+fn crack(every: u64, pace: f64) -> Simulation {
+    let text = format!(
+        "title = \"crack\"\n[domain]\noutline = [[0, 0], [12, 0], [12, 22], [0, 22]]\n[mesh]\nsize = 1.0\n\
+         origin = [0.131, 0.077]\n[[joint]]\npoints = [[2, 2], [2, 22]]\nlaw = \"crack\"\n[[joint]]\n\
+         points = [[2, 2], [12, 2]]\nlaw = \"joint\"\n[rock.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n\
+         [joint_law.crack]\nfriction_deg = 40\naperture = 5e-3\n[joint_law.joint]\nfriction_deg = 40\n\
+         aperture = 1e-4\n[[fix]]\nedge = [[0, 0], [12, 0]]\n[flow]\npace = {pace:?}\n[[head]]\nname = \"exit\"\n\
+         edge = [[12, 0], [12, 22]]\nlevel = 18.0\n[[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 0.3\n\
+         [[stage]]\nname = \"motion\"\nkind = \"dynamic\"\nduration = 1.0\nflow = \"transient\"\n\
+         flow_every = {every}\nheads = {{ exit = 2.0 }}\n"
+    );
+    let mut model = simulation(&text);
     assert!(model.next_stage().expect("a stage"));
-    let before = model.state().clone();
-    let drive = model.drive();
-    (drive.from.rain[0], drive.to.rain[0]) = (-1.0, -1.0);
-    let told = model.advance(false).expect_err("no such rain").to_string();
-    assert!(told.contains("at (12.000, 9.000) m") && told.contains("rate"), "{told}");
-    assert!(told.contains("apertures differ less"), "{told}");
-    assert_eq!((model.state().stage_step, &model.state().seepage), (0, &before.seepage));
+    model
+}
+
+/// Head (m) at the foot of the crack.
+fn foot(model: &Simulation) -> f64 {
+    let net = model.model().flow.as_ref().expect("a net");
+    let is_foot = |k: &usize| (net.places[*k].x - 2.0).hypot(net.places[*k].y - 2.0) < 1e-9;
+    let foot = (0..net.places.len()).find(is_foot).expect("the foot");
+    2.0 + model.state().seepage.as_ref().expect("water that flows").unknowns[foot]
+}
+
+/// Water (m²) that entered and neither left nor is in the joints, of all that has passed.
+fn assert_closes(seepage: &Seepage, holds: f64) {
+    let ([entered, left], stored) = (seepage.passed, seepage.stored);
+    let allowed = 1e-12 * (entered + left) + 1e-14 * holds;
+    assert!((entered - left - stored).abs() <= allowed, "{entered:e} - {left:e} - {stored:e}, up to {allowed:.1e}");
+}
+
+#[test]
+fn the_head_in_a_crack_falls_with_the_motion_at_its_pace() {
+    let tau = 5e-3 * 10.0 / T;
+    let dt = crack(1, 1.0).model().dt;
+    for (every, steps) in [(2, 20), (1, 80)] {
+        let pace = tau / (dt * (every * steps) as f64);
+        let mut model = crack(every, pace);
+        let mut falls = vec![foot(&model)];
+        for _ in 0..steps {
+            step(&mut model, every);
+            falls.push(foot(&model));
+        }
+        assert!((falls[0] - 18.0).abs() < 1e-9 && falls.is_sorted_by(|a, b| a > b), "{falls:?}");
+        for (k, head) in falls.iter().enumerate() {
+            let exact = (1.0 + 1.0 / steps as f64).powi(-(k as i32));
+            assert!(((head - 2.0) / 16.0 - exact).abs() < 1e-4, "{k} of {steps}: {head} {exact}");
+        }
+        let found = model.state().seepage.as_ref().expect("water that flows");
+        let exact = -5e-3 * 16.0 * (1.0 - (1.0 + 1.0 / steps as f64).powi(-(steps as i32)));
+        assert!((found.stored / exact - 1.0).abs() < 1e-3, "{} {exact}", found.stored);
+        assert!((found.time / tau - 1.0).abs() < 1e-12);
+        assert_eq!(found.balances.last().and_then(|own| own.water.as_ref()).map(|own| own.stored), Some(found.stored));
+        assert_closes(found, 5e-3 * 20.0);
+        assert_eq!(model.unfinished_drainage(), None, "no stage with a time of flow");
+    }
+}
+
+#[test]
+fn entered_less_left_is_stored_in_flow_that_goes_on() {
+    let model = driven(STEP, LAGS);
+    let found = seepage(&model);
+    println!("{:?} {:e}", found.passed, found.stored);
+    assert!(found.passed.iter().all(|volume| *volume > 0.0) && found.stored.abs() > 1e-6);
+    assert_closes(found, 0.1);
+    assert_eq!(model.totals().flow.stored, found.stored);
+    // A later stage that holds the flow goes on with its rates.
+    let held = "[[stage]]\nname = \"held\"\nkind = \"dynamic\"\nduration = 1.0\n";
+    let text = dam(1.3, &format!("{LAGS}{held}")).replacen("duration = 1.0", "duration = 0.01", 1);
+    let mut model = Cosimulation::new(case(&text)).unwrap_or_else(|e| panic!("{e}"));
+    good(model.start());
+    good(model.set_head(0, 5.0));
+    go(&mut model, 24.0 * STEP, STEP);
+    let before = seepage(&model).clone();
+    go(&mut model, 32.0 * STEP, STEP);
+    assert_eq!(seepage(&model).unknowns, before.unknowns);
+    assert!(seepage(&model).passed[1] > before.passed[1] && seepage(&model).stored < before.stored);
+    assert_closes(seepage(&model), 0.1);
+}
+
+/// Pressures lie between those of before and those that follow, and come to the latter after a long time.
+#[test]
+fn pressures_lag_behind_heads_and_come_to_rest() {
+    let uplift = |course: &str, pace: &str| {
+        let mut model =
+            Cosimulation::new(case(&dam(1.3, course).replace("2e5", pace))).unwrap_or_else(|e| panic!("{e}"));
+        good(model.start());
+        let before = model.port_state(0).water.uplift;
+        good(model.set_head(0, 6.0));
+        good(model.do_step(0.0, 8.0 * STEP));
+        [before, model.port_state(0).water.uplift]
+    };
+    let [before, after] = uplift(FOLLOWS, "");
+    let [start, late] = uplift(LAGS, "2e5");
+    assert_eq!(start, before);
+    assert!(late < before && late - after > 0.1 * (before - after), "{late} of {before} to {after}");
+    let [_, rests] = uplift(LAGS, "1e10");
+    assert_near(rests, after, 1e3 * after, "after a long time");
+    let [_, own] = uplift(LAGS, "4e5");
+    assert!(own < late, "twice the pace");
+}
+
+#[test]
+fn inputs_before_the_start_belong_to_the_flow_at_the_start() {
+    let text = dam(1.3, LAGS);
+    let (rest, motion) = (text.find("[[stage]]").expect("rest"), text.rfind("[[stage]]").expect("motion"));
+    for text in [format!("{}{}", &text[..rest], &text[motion..]), text] {
+        let mut model = Cosimulation::new(case(&text)).unwrap_or_else(|e| panic!("{e}"));
+        good(model.set_head(0, 8.0));
+        good(model.start());
+        good(model.do_step(0.0, STEP));
+        let (uplift, exact) = (model.port_state(0).water.uplift, WEIGHT * 3.0 * WIDTH);
+        assert_near(uplift, exact, 1e3 * exact, "uplift");
+        assert!(seepage(&model).time > 0.0 && seepage(&model).stored.abs() < 1e-12);
+    }
+}
+
+/// As a run that stops and is resumed between two flows, and that comes to the same flow again after a return.
+#[test]
+fn a_run_goes_on_from_bytes_and_returns_with_the_same_bits() {
+    let text = dam(1.3, &format!("{LAGS}heads = {{ heel = 6.0 }}\nrain = {{ crest = 1e-8 }}\n"));
+    let begin = || {
+        let mut model = simulation(&text);
+        assert!(model.next_stage().expect("a stage"));
+        model
+    };
+    let bits = |model: &Simulation| encode(Keeper::Model, model.state(), "hash").expect("bytes");
+    let mut whole = begin();
+    step(&mut whole, 6);
+    let (before, written) = (whole.state().clone(), bits(&whole));
+    step(&mut whole, 9);
+    let end = bits(&whole);
+    whole.return_to(&before);
+    step(&mut whole, 9);
+    assert!(bits(&whole) == end, "returned");
+    let mut other = begin();
+    let read: State = decode(Keeper::Model, &written, "hash").expect("a state");
+    other.check(&read).expect("a state of this model");
+    other.restore(read);
+    step(&mut other, 9);
+    assert!(bits(&other) == end, "from bytes");
+    let mut wrong = before;
+    wrong.seepage.as_mut().expect("flow").stored = f64::NAN;
+    assert!(other.check(&wrong).expect_err("refused").to_string().starts_with("seepage.stored is NaN"));
 }

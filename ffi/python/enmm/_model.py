@@ -453,8 +453,8 @@ class Model(Closing):
     def set_head(self, head: str | SupportsIndex, level: float) -> None:
         """Sets the level (m) of a head of water in joints, by its name or its place in the case.
 
-        It acts where the flow is found: at the start of static stages, and in dynamic ones with `flow = "steady"`. A
-        model whose flow is held from now on raises InvalidArgumentError.
+        It acts where the flow is found: at the start of static stages, and in dynamic ones with `flow = "steady"` or
+        `"transient"`. A model whose flow is held from now on raises InvalidArgumentError.
         """
         self._core.call("enmm_set_head", self._inlet(NameKind.HEAD, head), number("level", level))
 

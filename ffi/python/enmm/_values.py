@@ -144,6 +144,8 @@ class Totals(NamedTuple):
     """Largest imbalance of the flow at a node of the joints (m2/s)."""
     seepage_height: float
     """Height of the highest outcrop from which water seeps, of the lowest joint where none does (m)."""
+    water_stored: float
+    """Water that joints have taken in dynamic stages, m3 per metre (m2)."""
 
 
 class PortState(NamedTuple):
