@@ -337,6 +337,12 @@ fn keys_of_a_stage_that_make_no_sense_are_refused() {
         let told = refusal(&lags.replacen(old, new, 1));
         assert!(told.contains(wanted), "{told} instead of {wanted}");
     }
+    // Factors of safety leave the dynamic stages out, and what has an effect in them alone.
+    let mut short = case(&lags);
+    short.keep_stages(2);
+    assert_eq!(short.pace(), 2e5);
+    short.keep_stages(1);
+    assert!(short.validate().is_ok() && short.pace() == 1.0);
     let held = dam(1.3, "heads = { toe = 5.0 }\n");
     assert!(refusal(&held).contains("stage[1].heads.toe: is in a dynamic stage, which holds"), "{}", refusal(&held));
 }
