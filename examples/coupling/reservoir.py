@@ -39,7 +39,7 @@ friction_deg = 40
 aperture = 1e-3
 
 [[joint]]
-points = [[22.0, 10.5749], [60.0, 8.0]]
+points = [[22.0, 10.5749], [60.0, 6.0]]
 law = "fault"
 
 [[head]]
@@ -132,9 +132,9 @@ def draw(result, path):
     axes["p"].plot(t, 1e-6 * uplift, color="#c0392b")
     axes["p"].set_ylabel("uplift of the\nplane [MN/m]")
     axes["u"].plot(t, 1000.0 * moved, color="black")
-    axes["u"].set_ylabel("toe displacement [mm]")
+    axes["u"].set_ylabel("toe displace-\nment [mm]")
     axes["v"].semilogy(t, np.maximum(speed, 1e-8), color="black", lw=0.8)
-    axes["v"].set_ylabel("largest velocity [m/s]")
+    axes["v"].set_ylabel("largest\nvelocity [m/s]")
     axes["v"].set_xlabel("time [s]")
     top = level.max()
     for outline in result["after"]:
