@@ -312,7 +312,7 @@ fn keys_of_a_stage_that_make_no_sense_are_refused() {
         ("flow = \"steady\"\n", "", "stage[1].flow_every: is 4, and has no effect without `flow = \"steady\"`"),
         ("flow = \"steady\"", "flow = \"hold\"", "stage[1].flow_every: is 4"),
         ("flow = \"steady\"", "flow = \"still\"", "is \"still\", must be one of hold, steady"),
-        ("flow = \"steady\"", "flow = 3", "\"hold\" or \"steady\""),
+        ("flow = \"steady\"", "flow = 3", "must be one of the strings hold, steady, or a table"),
         ("duration = 0.3\n", "duration = 0.3\nflow = \"steady\"\n", "stage[0].flow: is \"steady\", but only dynamic"),
         ("flow_every = 4", "rain = { fog = 1e-9 }", "fog"),
     ] {

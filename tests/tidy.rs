@@ -14,11 +14,11 @@ const ROOMS: [(&str, usize); 12] = [
     ("mechanics", 2900),
     ("contact", 7800),
     ("flow", 700),
-    ("state", 2250),
+    ("state", 2400),
     ("step", 3550),
-    ("fracture", 1200),
+    ("fracture", 1260),
     ("recut", 1150),
-    ("model", 7200),
+    ("model", 7900),
     ("cosimulation", 2_800),
 ];
 const COLUMNS_MAX: usize = 120;

@@ -74,12 +74,18 @@ pub struct FlowNet {
     pub drains: Vec<Drain>,
     /// Aperture (m) at the start by law; 0 for joints that do not conduct.
     pub apertures: Vec<f64>,
+    /// Mechanical aperture (m) at the start by law, and the hydraulic one over its square (1/m); none of smooth ones.
+    pub mechanical: Vec<Option<[f64; 2]>>,
     /// Least and greatest aperture (m) of joints that conduct.
     pub range: [f64; 2],
     /// Dynamic viscosity (Pa s).
     pub viscosity: f64,
     /// Density of the water at the start (kg/m³).
     pub density: f64,
+    /// Whether apertures follow openings in the course of static stages.
+    pub coupled: bool,
+    /// Water (m) that the rock beside joints gives as they drain, for each m² of joint.
+    pub storage: f64,
     /// Nodes and pipes, with the order in which systems are solved.
     pub net: Net,
 }
@@ -119,17 +125,37 @@ impl FlowNet {
         let pipes: Vec<[u32; 2]> = pieces.iter().map(|piece| piece.nodes).collect();
         let net = Net::new(&heights, &pipes)?;
         let places = nodes.places;
-        let (heads, rains, drains, apertures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let (range, viscosity, density) = ([0.0; 2], 1.0, 0.0);
-        Ok(Self { pieces, places, outcrops, heads, rains, drains, apertures, range, viscosity, density, net })
+        Ok(Self {
+            pieces,
+            places,
+            outcrops,
+            heads: Vec::new(),
+            rains: Vec::new(),
+            drains: Vec::new(),
+            apertures: Vec::new(),
+            mechanical: Vec::new(),
+            range: [0.0; 2],
+            viscosity: 1.0,
+            density: 0.0,
+            coupled: false,
+            storage: 0.0,
+            net,
+        })
     }
 
     /// Aperture (m) of a joint of a law that has opened by `opening` (m) since the start; 0 for one that does not
-    /// conduct (Eq. 96). Closure that is the solver's own does not count.
+    /// conduct (Eqs. 96, 103). Closure that is the solver's own does not count.
     pub fn aperture(&self, law: LawId, opening: f64, closes: bool) -> f64 {
         let start = self.apertures[law.index()];
         let opening = if closes { opening } else { opening.max(0.0) };
-        if start > 0.0 { (start + opening).clamp(self.range[0], self.range[1]) } else { 0.0 }
+        let aperture = match self.mechanical[law.index()] {
+            Some([mechanical, smoothness]) => {
+                let mechanical = (mechanical + opening).max(0.0);
+                mechanical.min(smoothness * mechanical * mechanical)
+            }
+            None => start + opening,
+        };
+        if start > 0.0 { aperture.clamp(self.range[0], self.range[1]) } else { 0.0 }
     }
 
     /// Whether a piece conducts at each node.

@@ -4,6 +4,7 @@ use crate::cover::ElementId;
 use crate::geometry::{Point, Vector, cross, orientation, polygon, segment};
 use crate::state::Model;
 
+use super::masses::{CoverMass, Masses, of_part};
 use super::outline::{End, Outline};
 
 /// Distance over the mesh size within which an end is a node that is there already.
@@ -27,10 +28,19 @@ pub struct Chord {
     pub is_square: bool,
     /// Covers of the block, by their places in it, whose mass lies to its left as a whole: from and to.
     whole: Vec<[u32; 2]>,
-    /// Covers of which a share of the mass does.
-    partial: Vec<(u32, f64)>,
+    /// Covers of which a part of the mass does.
+    partial: Vec<(u32, CoverShare)>,
     /// Rock to its left and to its right (m), of a block that is not convex.
     sides: Option<Sides>,
+}
+
+/// The part of the mass of a cover on one side of a section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoverShare {
+    /// Its share of the mass.
+    pub share: f64,
+    /// That share of the way (m) from the star to its centroid, in the reference configuration.
+    pub arm: Vector,
 }
 
 /// The rock on both sides of a section.
@@ -85,10 +95,11 @@ impl Chord {
         (self.places[1] - self.places[0]).norm()
     }
 
-    /// Places in the block of the covers that have mass to its left, with the share of it.
-    pub fn covers(&self) -> impl Iterator<Item = (usize, f64)> {
-        let whole = self.whole.iter().flat_map(|&[from, to]| (from..to).map(|k| (k as usize, 1.0)));
-        whole.chain(self.partial.iter().map(|&(k, share)| (k as usize, share)))
+    /// Places in a block of the covers that have mass to its left, with the part of it.
+    pub fn covers(&self, masses: &Masses) -> impl Iterator<Item = (usize, CoverShare)> {
+        let all = |k: u32| (k as usize, CoverShare { share: 1.0, arm: masses.arms[k as usize] });
+        let whole = self.whole.iter().flat_map(move |&[from, to]| (from..to).map(all));
+        whole.chain(self.partial.iter().map(|&(k, part)| (k as usize, part)))
     }
 
     /// Share of an even load on a piece of the boundary that acts on the rock to its left, and the middles (m) of the
@@ -120,32 +131,29 @@ impl Chord {
         (if is_left { 1.0 } else { 0.0 }, [middle; 2])
     }
 
-    /// Finds how much of the mass of each cover lies to its left.
+    /// Finds how much of the mass of each cover lies to its left, and where.
     fn weigh(&mut self, model: &Model, outline: &Outline) {
-        let covers = &model.covers;
+        let (covers, masses) = (&model.covers, outline.masses(model));
         let first = covers.covers_of(outline.block).start;
-        let mut mass = vec![0.0; covers.covers_of(outline.block).len()];
-        let mut is_cut = vec![false; mass.len()];
+        let mut left = vec![CoverMass::default(); masses.amounts.len()];
+        let mut is_cut = vec![false; left.len()];
         let mut part = Vec::new();
-        for e in ElementId::range(covers.elements_of(outline.block)) {
+        for (e, whole) in ElementId::range(covers.elements_of(outline.block)).zip(&masses.elements) {
             let element = covers.polygon(e);
             let local = covers.element_covers[e].map(|cover| cover.index() - first);
-            let density = model.rock_of(e).density;
-            let mut add = |area: f64, centroid: Point| {
-                for (k, w) in local.iter().zip(covers.weights(e, centroid)) {
-                    mass[*k] += density * area * w;
-                }
-            };
+            let mut add = |of_part: &[CoverMass; 3]| local.iter().zip(of_part).for_each(|(k, mass)| left[*k] += *mass);
             match self.side_of(element, covers.element_centroid[e]) {
                 Some(false) => {}
-                Some(true) => add(covers.element_area[e], covers.element_centroid[e]),
+                Some(true) => add(whole),
                 None => {
                     local.iter().for_each(|&k| is_cut[k] = true);
-                    self.each_left_part(element, &mut part, &mut add);
+                    self.each_left_part(element, &mut part, |part| {
+                        add(&of_part(model, e, part, polygon::area(part), polygon::centroid(part)));
+                    });
                 }
             }
         }
-        self.sum_up(&mass, &model.mass_matrix.row_sum[covers.covers_of(outline.block)], &is_cut);
+        self.sum_up(&left, &masses.amounts, &is_cut);
     }
 
     /// Whether an element lies to its left; none where it cuts it.
@@ -181,22 +189,22 @@ impl Chord {
         end.min(self.length()) - start.max(0.0) > ON * self.length()
     }
 
-    /// Area (m²) and centroid (m) of each part to its left of an element that it runs through. The line of a section
-    /// may cut the element a second time, beyond a notch, where the section does not run.
-    fn each_left_part(&self, element: &[Point], part: &mut Vec<Point>, mut add: impl FnMut(f64, Point)) {
+    /// Each part to its left of an element that it runs through. The line of a section may cut the element a second
+    /// time, beyond a notch, where the section does not run.
+    fn each_left_part(&self, element: &[Point], part: &mut Vec<Point>, mut add: impl FnMut(&[Point])) {
         let mut add_part = |piece: &[Point]| {
             let aside = |p: &Point| (p - self.places[0]).dot(&left_of(self.places));
             let crosses = piece.iter().any(|p| aside(p) < 0.0) && piece.iter().any(|p| aside(p) > 0.0);
             match &self.sides {
                 Some(sides) if !(crosses && self.runs_through(piece)) => {
                     if sides.is_left(polygon::centroid(piece)) {
-                        add(polygon::area(piece), polygon::centroid(piece));
+                        add(piece);
                     }
                 }
                 _ => {
                     clip(piece, self.places, part);
                     if polygon::area(part) > 0.0 {
-                        add(polygon::area(part), polygon::centroid(part));
+                        add(part);
                     }
                 }
             }
@@ -208,15 +216,15 @@ impl Chord {
         }
     }
 
-    /// Keeps the covers whose mass (kg/m) lies to the left, as a whole or in part.
-    fn sum_up(&mut self, mass: &[f64], all: &[f64], is_cut: &[bool]) {
-        for (k, (&mass, &all)) in mass.iter().zip(all).enumerate() {
-            if mass == 0.0 {
+    /// Keeps the covers whose mass lies to the left, as a whole or in part, of all that each has (kg/m).
+    fn sum_up(&mut self, left: &[CoverMass], all: &[f64], is_cut: &[bool]) {
+        for (k, (left, &all)) in left.iter().zip(all).enumerate() {
+            if left.amount == 0.0 {
                 continue;
             }
             let k32 = k as u32;
             if is_cut[k] {
-                self.partial.push((k32, mass / all));
+                self.partial.push((k32, CoverShare { share: left.amount / all, arm: left.moment / all }));
             } else if let Some([_, to]) = self.whole.last_mut().filter(|[_, to]| *to == k32) {
                 *to += 1;
             } else {

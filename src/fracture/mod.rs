@@ -4,6 +4,7 @@ mod blocks;
 mod chord;
 mod cores;
 mod forces;
+mod masses;
 mod outline;
 mod search;
 

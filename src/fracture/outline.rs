@@ -1,9 +1,13 @@
 //! Outlines of blocks that can break, in the reference configuration.
 
+use std::sync::OnceLock;
+
 use crate::contact::EdgeId;
 use crate::cover::BlockId;
 use crate::geometry::{Point, Vector, orientation, polygon, segment};
 use crate::state::Model;
+
+use super::masses::Masses;
 
 /// Distance over the mesh size within which a support holds an edge.
 const HELD: f64 = 1e-6;
@@ -29,6 +33,7 @@ pub struct Outline {
     pub is_convex: bool,
     /// Longest distance (m) between two of its points, by its box.
     pub extent: f64,
+    masses: OnceLock<Masses>,
 }
 
 /// A place on an outline, where a section may end: an edge, and the share of the way along it.
@@ -41,6 +46,11 @@ pub struct End {
 }
 
 impl Outline {
+    /// Masses of the block, found once.
+    pub fn masses(&self, model: &Model) -> &Masses {
+        self.masses.get_or_init(|| Masses::of(model, self.block))
+    }
+
     /// That of a block which is one loop without a crack, and all of whose rock can break.
     pub fn new(model: &Model, block: BlockId, edges: &[EdgeId], supports: &[Point]) -> Option<Self> {
         let boundary = &model.boundary;
@@ -78,6 +88,7 @@ impl Outline {
             extent: (high - low).norm(),
             edges: edges.to_vec(),
             points,
+            masses: OnceLock::new(),
         })
     }
 

@@ -4,12 +4,12 @@ use rayon::prelude::*;
 
 use crate::cover::{BlockId, CoverId, ElementId};
 use crate::geometry::{Point, Vector};
-use crate::mechanics::{Resultants, RockStrength, SectionCut, SectionFailure};
+use crate::mechanics::{CoverPart, Resultants, RockStrength, SectionCut, SectionFailure};
 use crate::state::{Model, State, Workspace, WorstSection};
 use crate::step::Regime;
 
 use super::blocks::{BreakableBlock, BreakableBlocks};
-use super::chord::{Chord, end_at, place};
+use super::chord::{Chord, CoverShare, end_at, place};
 use super::cores::principal;
 use super::forces::{BlockForce, BlockForces};
 use super::outline::{End, Outline};
@@ -109,6 +109,8 @@ struct LoadedBlock<'a> {
     held: Vec<bool>,
     /// How far it has turned (rad).
     turn: f64,
+    /// Where the x axis of the reference configuration points now.
+    heading: Vector,
     /// Whether it also splits from within.
     splits: bool,
 }
@@ -141,8 +143,23 @@ impl<'a> LoadedBlock<'a> {
         let strength = RockStrength { tension, cohesion, friction, characteristic };
         let places = CoverId::range(covers).map(place).collect();
         let turn = turn(model, state, outline.block);
+        let heading = Vector::new(libm::cos(turn), libm::sin(turn));
         let splits = rock.cores;
-        Some(Self { model, state, block, outline, strength, internal, points, on_covers, places, held, turn, splits })
+        Some(Self {
+            model,
+            state,
+            block,
+            outline,
+            strength,
+            internal,
+            points,
+            on_covers,
+            places,
+            held,
+            turn,
+            heading,
+            splits,
+        })
     }
 
     /// Its section that is nearest to its strength.
@@ -271,15 +288,18 @@ impl<'a> LoadedBlock<'a> {
     fn share(&self, chord: &Chord) -> Option<(f64, SectionFailure, Resultants)> {
         let turns = self.held_on(chord)?;
         let ends = chord.ends.map(|end| self.moved(end));
+        let masses = self.outline.masses(self.model);
         let carries = if turns {
-            let mut right = vec![1.0; self.places.len()];
-            chord.covers().for_each(|(k, share)| right[k] -= share);
-            let covers = right.iter().enumerate().map(|(k, share)| (*share, self.places[k], self.on_covers[k]));
+            let mut right: Vec<_> = masses.arms.iter().map(|&arm| CoverShare { share: 1.0, arm }).collect();
+            for (k, left) in chord.covers(masses) {
+                right[k] = CoverShare { share: right[k].share - left.share, arm: right[k].arm - left.arm };
+            }
+            let covers = right.into_iter().enumerate().map(|(k, part)| self.cover_part(k, part));
             let points = self.points.iter().map(|force| self.part(chord, force, 1));
             let seen_from_there = SectionCut { ends: [ends[1], ends[0]] }.resultants(covers, points);
             Resultants { moment: -seen_from_there.moment, ..seen_from_there }
         } else {
-            let covers = chord.covers().map(|(k, share)| (share, self.places[k], self.on_covers[k]));
+            let covers = chord.covers(masses).map(|(k, part)| self.cover_part(k, part));
             SectionCut { ends }.resultants(covers, self.points.iter().map(|f| self.part(chord, f, 0)))
         };
         // Bending is that of beams, whose sections are square to their faces.
@@ -293,8 +313,18 @@ impl<'a> LoadedBlock<'a> {
         let (left, middles) = chord.share_of(force.piece);
         let share = if side == 0 { left } else { 1.0 - left };
         let off = middles[side] - (force.piece[0] + force.piece[1]) * 0.5;
-        let (s, c) = (libm::sin(self.turn), libm::cos(self.turn));
-        (force.at + Vector::new(c * off.x - s * off.y, s * off.x + c * off.y), force.force * share)
+        (force.at + self.turned(off), force.force * share)
+    }
+
+    /// A part of a cover as it is now.
+    fn cover_part(&self, k: usize, CoverShare { share, arm }: CoverShare) -> CoverPart {
+        CoverPart { share, star: self.places[k], arm: self.turned(arm), force: self.on_covers[k] }
+    }
+
+    /// A way in the reference configuration, turned with the block.
+    fn turned(&self, way: Vector) -> Vector {
+        let (c, s) = (self.heading.x, self.heading.y);
+        Vector::new(c * way.x - s * way.y, s * way.x + c * way.y)
     }
 
     /// Whether fixities hold rock on the left of a section alone; none where they hold it on both sides.
@@ -304,10 +334,10 @@ impl<'a> LoadedBlock<'a> {
         }
         let mut rest = self.held.clone();
         let (mut left, mut cut) = (false, false);
-        for (k, share) in chord.covers() {
+        for (k, part) in chord.covers(self.outline.masses(self.model)) {
             if std::mem::take(&mut rest[k]) {
                 left = true;
-                cut |= share < 1.0;
+                cut |= part.share < 1.0;
             }
         }
         let right = cut || rest.contains(&true);

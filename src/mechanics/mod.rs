@@ -32,6 +32,6 @@ pub use motion::{
     rigid_velocity, turning,
 };
 pub use record::Record;
-pub use section::{Resultants, RockStrength, SectionCut, SectionFailure, bending_strength, crack_time};
+pub use section::{CoverPart, Resultants, RockStrength, SectionCut, SectionFailure, bending_strength, crack_time};
 pub use turn::Turn;
 pub use yield_lanes::{ElementRow, PatchPlaces, PlasticPlaces};

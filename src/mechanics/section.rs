@@ -84,6 +84,19 @@ impl Resultants {
     }
 }
 
+/// A cover of which a share of the mass lies on one side of a section.
+#[derive(Debug, Clone, Copy)]
+pub struct CoverPart {
+    /// The share.
+    pub share: f64,
+    /// Place of the star (m).
+    pub star: Point,
+    /// That share of the way (m) from the star to the centroid of this mass.
+    pub arm: Vector,
+    /// Force (N/m) on the cover, without what acts by mass.
+    pub force: Vector,
+}
+
 /// A section at its current place.
 #[derive(Debug, Clone, Copy)]
 pub struct SectionCut {
@@ -92,21 +105,19 @@ pub struct SectionCut {
 }
 
 impl SectionCut {
-    /// What it carries (Eq. 32b), from the part of a block to its left: the share of the mass of each cover that lies
-    /// there, the place (m) of the cover and the force (N/m) on it, without forces that act by mass; and places and
-    /// forces of what acts on the part at points.
+    /// What it carries (Eq. 32b), from the part of a block to its left: its covers, and places (m) and forces (N/m) of
+    /// what acts on it at points.
     pub fn resultants(
         &self,
-        covers: impl Iterator<Item = (f64, Point, Vector)>,
+        covers: impl Iterator<Item = CoverPart>,
         points: impl Iterator<Item = (Point, Vector)>,
     ) -> Resultants {
         let [from, to] = self.ends;
         let middle = (from + to) * 0.5;
         let (mut force, mut moment) = (Vector::zeros(), 0.0);
-        for (share, place, on_cover) in covers {
-            let part = on_cover * share;
-            force += part;
-            moment += (place - middle).perp(&part);
+        for CoverPart { share, star, arm, force: on_cover } in covers {
+            force += on_cover * share;
+            moment += ((star - middle) * share + arm).perp(&on_cover);
         }
         for (at, of_point) in points {
             force -= of_point;
@@ -146,9 +157,10 @@ mod tests {
         // Two covers, of which one and a half weigh 3 N/m; a force of 5 N/m presses down on the part.
         let cut = SectionCut { ends: [Point::new(1.0, 1.0), Point::new(-1.0, 1.0)] };
         let force = Vector::new(0.0, 2.0);
-        let covers = [(1.0, Point::new(0.5, 0.0), force), (0.5, Point::new(-0.5, 0.0), force)];
+        let part = |share, x, arm| CoverPart { share, star: Point::new(x, 0.0), arm: Vector::new(arm, 0.0), force };
+        let covers = [part(1.0, 0.5, 0.0), part(0.5, -0.5, 0.125)];
         let point = (Point::new(0.25, 0.0), Vector::new(0.0, -5.0));
         let found = cut.resultants(covers.into_iter(), [point].into_iter());
-        assert_eq!(found, Resultants { normal: 8.0, shear: 0.0, moment: 0.5 * 2.0 - 0.5 * 1.0 + 0.25 * 5.0 });
+        assert_eq!(found, Resultants { normal: 8.0, shear: 0.0, moment: 0.5 * 2.0 - 0.25 * 1.0 + 0.25 * 5.0 });
     }
 }

@@ -15,10 +15,13 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::Resultants;
 use crate::state::{
     Counters, Course, Drive, Event, EventKind, Events, FlowBalance, FrictionDelay, Inputs, Ledger, Model, MostRest,
-    Seepage, State, Surroundings, WorstSection,
+    Round, Rounds, Seepage, StageWater, State, Surroundings, WorstSection,
 };
 
+use crate::flow::DEPTH;
 use crate::step::has_bonds;
+
+use super::openings::ROUNDS_MAX;
 
 use super::Simulation;
 use super::assemble::Built;
@@ -317,7 +320,7 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
         (None, Some(_)) => return unfit("seepage", "given", "none in this model".to_owned()),
         (Some(_), None) => return unfit("seepage", "missing", "that of this model".to_owned()),
     };
-    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed } = seepage;
+    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed, time, rounds } = seepage;
     let Surroundings { level, weight, heads, rains, drains } = surroundings;
     check_sources(model, "seepage.surroundings", (heads, rains, drains))?;
     number("seepage.surroundings.level", *level, LENGTH)?;
@@ -337,15 +340,44 @@ fn check_seepage(model: &Model, seepage: Option<&Seepage>, stage: u32) -> Fit {
     for (k, unknown) in unknowns.iter().enumerate() {
         between(format_args!("seepage.unknowns[{k}]"), *unknown, -DELTA, LENGTH)?;
     }
+    between("seepage.time", *time, 0.0, f64::MAX)?;
+    check_rounds(rounds, apertures)?;
     in_order("seepage.balances", "by stage", balances.is_sorted_by(|a, b| a.stage < b.stage))?;
-    for (k, FlowBalance { stage: of, sums, residual, seeps }) in balances.iter().enumerate() {
+    for (k, FlowBalance { stage: of, sums, residual, seeps, water, rounds }) in balances.iter().enumerate() {
         at_most(format_args!("seepage.balances[{k}].stage"), (*of).into(), stage.into())?;
         length("seepage.balances.sums", sums.len(), net.inlet_count())?;
         numbers("seepage.balances.sums", sums.as_flattened(), RATE)?;
         number("seepage.balances.residual", *residual, RATE)?;
         seeps.map_or(Ok(()), |height| number("seepage.balances.seeps", height, LENGTH))?;
+        if let Some(Rounds { count, asked, piece, is_over: _, agree: _ }) = rounds {
+            at_most("seepage.balances.rounds.count", (*count).into(), ROUNDS_MAX.into())?;
+            at_most("seepage.balances.rounds.piece", (*piece).into(), net.pieces.len() as u64 - 1)?;
+            between("seepage.balances.rounds.asked", *asked, 0.0, LENGTH)?;
+        }
+        check_stage_water(water.as_ref(), net.inlet_count())?;
     }
     Ok(())
+}
+
+/// Checks the rounds of a stage whose apertures follow openings.
+fn check_rounds(rounds: &[Round], apertures: &[[f64; 2]]) -> Fit {
+    at_most("the number of seepage.rounds", rounds.len() as u64, DEPTH as u64 + 1)?;
+    for Round { logs, asked } in rounds {
+        for (what, list) in [("seepage.rounds.logs", logs), ("seepage.rounds.asked", asked)] {
+            length(what, list.len(), apertures.len())?;
+            list.as_flattened().iter().try_for_each(|value| between(what, *value, -100.0, 100.0))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_stage_water(water: Option<&StageWater>, inlets: usize) -> Fit {
+    let Some(StageWater { time, sums, stored, drains }) = water else { return Ok(()) };
+    between("seepage.balances.water.time", *time, 0.0, f64::MAX)?;
+    length("seepage.balances.water.sums", sums.len(), inlets)?;
+    numbers("seepage.balances.water.sums", sums.as_flattened(), f64::MAX)?;
+    number("seepage.balances.water.stored", *stored, f64::MAX)?;
+    number("seepage.balances.water.drains", *drains, RATE)
 }
 
 fn check_drive(model: &Model, drive: &Drive) -> Fit {

@@ -5,15 +5,18 @@ mod bonds;
 mod breaking;
 mod failure;
 pub mod fit;
+mod flowing;
 mod grounds;
 mod inlets;
 mod looks;
 pub mod mechanism;
 mod observe;
+mod openings;
 pub mod overlap;
 mod rest;
 mod restless;
 mod seepage;
+mod seepage_time;
 pub mod settle;
 mod simulation;
 mod stage;
@@ -27,6 +30,7 @@ pub use enmm_case::Case;
 pub use assemble::{BuildStage, Built, ExplicitAlone, Integrators};
 pub use failure::{Farthest, SlopeFailure};
 pub use fit::Unfit;
+pub use flowing::{Flowing, FlowingInlet, FlowingPiece};
 pub use inlets::{INLET_QUANTITIES, InletState, JointFlow, JointWater};
 pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{
@@ -41,6 +45,6 @@ pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
     BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, FlowBalance, Inputs, Ledger, Port, PortKind,
-    Quantity, Seepage, State,
+    Quantity, Rounds, Seepage, StageWater, State,
 };
 pub use crate::step::{StepError, StepReport, Wanted};

@@ -36,7 +36,14 @@ impl Simulation {
     /// Whether a static stage has converged: ramp over, forces balanced, motion died out. It has also converged when
     /// the rest has been still for the time that it needed, and for the time of waves, and a few blocks
     /// ([`Simulation::mass_of_few`]), which rattle or fall, held more energy meanwhile.
+    ///
+    /// A stage whose apertures follow openings has not converged before they agree.
     pub fn at_rest(&self, report: &StepReport) -> bool {
+        !self.awaits_openings() && self.rock_rests(report)
+    }
+
+    /// Whether the rock is at rest, apart from what its openings do to the water.
+    pub(super) fn rock_rests(&self, report: &StepReport) -> bool {
         let start = self.state().stage_start;
         let is_long = |since: f64| report.time - since >= (since - start).max(self.wave_time());
         let for_long = self.state().most_rest.is_some_and(|rest| is_long(rest.since));

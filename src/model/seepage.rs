@@ -1,4 +1,4 @@
-//! Steady flow in the joints at the start of a static stage and in the course of a dynamic one, and what is known of it.
+//! Flow in the joints at the start of a static stage and in the course of a dynamic one, and what is known of it.
 
 use enmm_seepage::{Condition, Failure, Refused, Unsolved};
 use serde::Serialize;
@@ -15,15 +15,19 @@ use super::bonds::{BondState, bond_states};
 use super::case::{Invalid, Stage, StageKind};
 
 impl Simulation {
-    /// Finds the steady flow in the joints as they are at the start of a stage, if water flows in them.
+    /// Finds the flow in the joints as they are at the start of a stage, if water flows in them: the steady one, or
+    /// that at the end of the time which the stage gives it.
     ///
     /// # Errors
     /// No flow has been found.
     pub(super) fn find_flow(&mut self, stage: usize, start: f64) -> Result<(), Invalid> {
         let (model, state) = (&self.built.model, &self.state);
         let Some(net) = &model.flow else { return Ok(()) };
-        let seen = Seen { model, state, net, stage, start };
-        let found = seen.steady(seen.opened(), None);
+        let seen = Seen { model, state, net, stage, start, way: None };
+        let found = match (self.case.stages[stage].flow_time(), &state.seepage) {
+            (Some(time), Some(before)) => seen.over(time, before),
+            _ => seen.steady(seen.opened(), None),
+        };
         self.state.seepage = Some(found.map_err(|failure| told(net, &self.case.stages[stage].name, &failure))?);
         Ok(())
     }
@@ -40,13 +44,14 @@ impl Simulation {
         let stage = &self.case.stages[state.stage as usize];
         let is_due = match stage.flow_steps() {
             Some(every) => state.stage_step.is_multiple_of(every),
+            None if stage.flow_time().is_some() => false,
             None => state.stage_step == 0 && (stage.kind == StageKind::Static || state.stage == 0),
         };
         if !is_due || state.part != 0.0 {
             return Ok(());
         }
         let time = self.time();
-        let seen = Seen { model, state, net, stage: state.stage as usize, start: time };
+        let seen = Seen { model, state, net, stage: state.stage as usize, start: time, way: None };
         let is_found = seepage.balances.last().is_some_and(|balance| balance.stage == state.stage);
         if is_found && seen.are_as(&seepage.surroundings) {
             return Ok(());
@@ -129,7 +134,8 @@ impl Simulation {
     pub fn flow_survey(&self) -> Option<FlowSurvey> {
         let (model, state) = (&self.built.model, &self.state);
         let net = model.flow.as_ref()?;
-        Some(Seen { model, state, net, stage: state.stage as usize, start: self.time() }.survey())
+        let (stage, start) = (state.stage as usize, self.time());
+        Some(Seen { model, state, net, stage, start, way: None }.survey())
     }
 }
 
@@ -146,17 +152,21 @@ fn told(net: &FlowNet, stage: &str, failure: &Failure) -> Invalid {
 }
 
 /// A model at the start of a stage, whose changes have been made.
-struct Seen<'a> {
-    model: &'a Model,
-    state: &'a State,
-    net: &'a FlowNet,
-    stage: usize,
-    start: f64,
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub model: &'a Model,
+    pub state: &'a State,
+    pub net: &'a FlowNet,
+    pub stage: usize,
+    pub start: f64,
+    /// The flow of before, and the share of the way from its levels, heads and rain to those of the stage; none at
+    /// those of the stage.
+    pub way: Option<(&'a Seepage, f64)>,
 }
 
 impl Seen<'_> {
     /// Steady flow through pieces with apertures (m) at their nodes, from unknowns (m) of before or from a full net.
-    fn steady(&self, apertures: Vec<[f64; 2]>, start: Option<&[f64]>) -> Result<Seepage, Failure> {
+    pub fn steady(&self, apertures: Vec<[f64; 2]>, start: Option<&[f64]>) -> Result<Seepage, Failure> {
         let conductance = self.conductance(&apertures);
         let flooded = self.flooded();
         let conditions = self.conditions(&flooded, &conductance);
@@ -168,7 +178,7 @@ impl Seen<'_> {
         let (sums, seeps) = (self.net.sums(&conditions, &flow), self.net.seeps(&conditions, &flow));
         let before = self.state.seepage.as_ref();
         let earlier = before.iter().flat_map(|seepage| &seepage.balances).filter(|balance| balance.stage != stage);
-        let own = FlowBalance { stage, sums, residual, seeps };
+        let own = FlowBalance { stage, sums, residual, seeps, water: None, rounds: None };
         Ok(Seepage {
             unknowns: flow.u,
             conducts: conductance.iter().map(|g| *g > 0.0).collect(),
@@ -177,11 +187,13 @@ impl Seen<'_> {
             surroundings: self.surroundings(),
             balances: earlier.cloned().chain([own]).collect(),
             passed: before.map_or([0.0; 2], |seepage| seepage.passed),
+            time: before.map_or(0.0, |seepage| seepage.time),
+            rounds: Vec::new(),
         })
     }
 
     /// Unit weight of the water (N/m³).
-    fn weight(&self) -> f64 {
+    pub fn weight(&self) -> f64 {
         let drive = &self.state.drive;
         self.state.water_density * drive.gravity(drive.share(self.start)).norm()
     }
@@ -191,17 +203,30 @@ impl Seen<'_> {
         self.state.drive.water_level(self.state.drive.share(self.start))
     }
 
+    /// A value of the stage, or one on the way to it from that of before.
+    fn on_way(&self, to: f64, from: impl Fn(&Seepage) -> f64) -> f64 {
+        match self.way {
+            Some((before, share)) if share < 1.0 => {
+                let from = from(before);
+                from + (to - from) * share
+            }
+            _ => to,
+        }
+    }
+
     fn heads(&self) -> impl Iterator<Item = f64> {
         let (drive, share) = (&self.state.drive, self.state.drive.share(self.start));
-        (0..self.net.heads.len()).map(move |head| drive.head(head, share))
+        let on_way = |head: usize, to: f64| self.on_way(to, |before| before.surroundings.heads[head]);
+        (0..self.net.heads.len()).map(move |head| on_way(head, drive.head(head, share)))
     }
 
     fn rains(&self) -> impl Iterator<Item = f64> {
         let (drive, share) = (&self.state.drive, self.state.drive.share(self.start));
-        (0..self.net.rains.len()).map(move |rain| drive.rain(rain, share))
+        let on_way = |rain: usize, to: f64| self.on_way(to, |before| before.surroundings.rains[rain]);
+        (0..self.net.rains.len()).map(move |rain| on_way(rain, drive.rain(rain, share)))
     }
 
-    fn surroundings(&self) -> Surroundings {
+    pub fn surroundings(&self) -> Surroundings {
         let (heads, rains) = (self.heads().collect(), self.rains().collect());
         let drains = self.state.drive.to.drain.clone();
         Surroundings { level: self.level(), weight: self.weight(), heads, rains, drains }
@@ -216,7 +241,7 @@ impl Seen<'_> {
     }
 
     /// A flow that has not been found, with its place.
-    fn failed(&self, failure: Failure) -> StepError {
+    pub fn failed(&self, failure: Failure) -> StepError {
         let node = match failure {
             Failure::Unsolved(Unsolved { node, .. }) | Failure::Refused(Refused::Value { index: node, .. }) => node,
             Failure::Refused(_) => 0,
@@ -258,7 +283,7 @@ impl Seen<'_> {
     }
 
     /// Conductance (m²/s per m of head) of each piece with apertures (m) at its nodes; 0 where blocks are gone.
-    fn conductance(&self, apertures: &[[f64; 2]]) -> Vec<f64> {
+    pub fn conductance(&self, apertures: &[[f64; 2]]) -> Vec<f64> {
         let weight = self.weight();
         let of_piece = |(piece, own): (&FlowPiece, &[f64; 2])| match own[0] > 0.0 && self.is_there(piece) {
             true => self.net.conductance(piece, *own, weight),
@@ -268,7 +293,7 @@ impl Seen<'_> {
     }
 
     /// Apertures (m) at the nodes of each piece now; 0 where blocks are gone, bonds hold or the law is closed.
-    fn opened(&self) -> Vec<[f64; 2]> {
+    pub fn opened(&self) -> Vec<[f64; 2]> {
         let bonds = bond_states(self.model, self.state);
         let conducts = |piece: &FlowPiece| {
             let holds = piece.edges.iter().any(|edge| bonds[edge.index()] == BondState::Holds);
@@ -284,7 +309,7 @@ impl Seen<'_> {
     }
 
     /// Condition at each node, and which inlet it is.
-    fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
+    pub fn conditions(&self, flooded: &[bool], conductance: &[f64]) -> Vec<(Condition, Option<Inlet>)> {
         let (dug, depths) = (self.dug(flooded), self.net.places.iter().map(|&p| self.depth(p)).collect::<Vec<_>>());
         let conducts = self.net.conducting(conductance);
         let (heads, rains): (Vec<f64>, Vec<f64>) = (self.heads().collect(), self.rains().collect());
@@ -307,7 +332,7 @@ impl Seen<'_> {
     }
 
     /// Apertures (m) at both ends of a piece, by what it has opened since the start.
-    fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
+    pub fn apertures(&self, piece: &FlowPiece) -> [f64; 2] {
         let (boundary, law) = (&self.model.boundary, self.state.law_switch[piece.law]);
         let stars = &self.model.covers.star_position;
         let moved = |point: EdgeId| boundary.sample(point, &self.state.displacement);
@@ -325,12 +350,14 @@ impl Seen<'_> {
 
     /// Depth (m) of a position below the surface of the reservoir; negative where there is none.
     fn depth(&self, at: Point) -> f64 {
-        let level = self.level();
-        self.model.water.as_ref().map_or(-1.0, |water| water.surfaces[self.stage].depth(level, at))
+        let Some(water) = &self.model.water else { return -1.0 };
+        let of_stage = |before: &Seepage| before.balances.last().map_or(0, |balance| balance.stage as usize);
+        let was = |before: &Seepage| water.surfaces[of_stage(before)].depth(before.surroundings.level, at);
+        self.on_way(water.surfaces[self.stage].depth(self.level(), at), was)
     }
 
     /// Blocks that have been dug out and filled by the reservoir: those with a face in it, and those beside them.
-    fn flooded(&self) -> Vec<bool> {
+    pub fn flooded(&self) -> Vec<bool> {
         let (boundary, removed) = (&self.model.boundary, &self.state.removed);
         let mut flooded = vec![false; removed.len()];
         let deep = |edge: EdgeId| [edge, boundary.after(edge)].iter().any(|&k| self.depth(boundary.reference[k]) > 0.0);

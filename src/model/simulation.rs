@@ -278,6 +278,7 @@ impl Simulation {
         self.pass_water(rest);
         if is_due {
             self.state.most_rest = self.most_rest_with(&made);
+            self.follow_openings(&made)?;
         }
         if audits {
             self.note_overlaps();

@@ -5,6 +5,6 @@ pub use crate::contact::{
     Boundary, ContactHistory, DetectionRule, EdgeId, Facing, Facings, LawId, NodeId, Resistance, SideId, VertexEdge,
 };
 pub use crate::cover::{BlockId, BoundaryPiece, CoverId, ElementId, Outlines};
-pub use crate::flow::{FlowNet, FlowPiece, Outcrop, Wet, wet};
+pub use crate::flow::{FlowNet, FlowPiece, Inlet, Outcrop, Wet, wet};
 pub use crate::mechanics::{Resultants, SectionFailure};
 pub use crate::state::{Cut, Model, Seconds, Workspace, WorstSection};

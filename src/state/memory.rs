@@ -124,9 +124,11 @@ impl State {
 }
 
 fn flowing(seepage: &Seepage) -> usize {
-    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, passed: _ } = seepage;
+    let Seepage { unknowns, conducts, apertures, flooded, surroundings, balances, rounds, passed: _, time: _ } =
+        seepage;
     let Surroundings { level: _, weight: _, heads, rains, drains } = surroundings;
-    sum(&[unknowns, conducts, apertures, flooded, balances, heads, rains, drains])
+    let of_rounds: usize = rounds.iter().map(|round| sum(&[&round.logs, &round.asked])).sum();
+    of_rounds + sum(&[unknowns, conducts, apertures, flooded, balances, heads, rains, drains])
 }
 
 impl Workspace {

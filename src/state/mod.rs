@@ -25,7 +25,7 @@ pub use model::{
     TimedRecord, Water, WaterSurface,
 };
 pub use quantity::Quantity;
-pub use seepage::{FlowBalance, Seepage, Surroundings};
+pub use seepage::{FlowBalance, Round, Rounds, Seepage, StageWater, Surroundings};
 pub use workspace::{
     ChunkSums, ContactOutcome, Face, FaceBuffers, Flow, Grown, MotionBuffers, Seconds, SelectionBuffers,
     SupportBuffers, Suspect, SweepBuffers, Workspace, YieldBuffers,

@@ -1,15 +1,16 @@
-//! Water that flows in the joints: what the last static stage found at its start.
+//! Water that flows in the joints: what the last static stage found.
 
 use serde::{Deserialize, Serialize};
 
-/// Steady flow in the net of joints of a model.
+/// Flow in the net of joints of a model.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Seepage {
     /// Unknown (m) of each node: the pressure head above 0, the filling of the film below.
     pub unknowns: Vec<f64>,
     /// Whether each piece of joint conducted.
     pub conducts: Vec<bool>,
-    /// Apertures (m) at both nodes of each piece as the last static stage began, 0 where it did not conduct.
+    /// Apertures (m) at both nodes of each piece, 0 where it did not conduct: as the last static stage began, or as its
+    /// openings have made them.
     pub apertures: Vec<[f64; 2]>,
     /// Whether each block has been dug out and water of the reservoir is in its place.
     pub flooded: Vec<bool>,
@@ -19,10 +20,40 @@ pub struct Seepage {
     pub balances: Vec<FlowBalance>,
     /// Water (m², that is m³ per metre of depth) that has entered and left in dynamic stages.
     pub passed: [f64; 2],
+    /// Time (s) of the flow so far, in static stages that give it one.
+    pub time: f64,
+    /// The last rounds in which openings make apertures, the oldest first; none in a stage whose apertures stay.
+    pub rounds: Vec<Round>,
 }
 
 clone_without_allocating! {
-    Seepage { unknowns conducts apertures flooded surroundings balances passed }
+    Seepage { unknowns conducts apertures flooded surroundings balances passed time rounds }
+}
+
+/// Apertures with which a flow was found, and how far from them openings were when the rock was at rest.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Round {
+    /// Logarithms of the apertures (m) at both nodes of each piece; 0 where it does not conduct.
+    pub logs: Vec<[f64; 2]>,
+    /// Those of the apertures that openings asked for, less these.
+    pub asked: Vec<[f64; 2]>,
+}
+
+clone_without_allocating!(Round { logs asked });
+
+/// How far openings and apertures of a stage have come to terms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rounds {
+    /// Flows found with apertures of openings.
+    pub count: u32,
+    /// Greatest change of ln e that openings ask for in wet joints, when the rock was at rest last.
+    pub asked: f64,
+    /// The piece of joint that asks for it.
+    pub piece: u32,
+    /// Whether no further round follows.
+    pub is_over: bool,
+    /// Whether openings and apertures agree.
+    pub agree: bool,
 }
 
 impl Seepage {
@@ -70,4 +101,34 @@ pub struct FlowBalance {
     pub residual: f64,
     /// Height (m) of the highest outcrop from which water seeps; none where none does.
     pub seeps: Option<f64>,
+    /// Water of a stage whose flow has a time; `sums` are the means of its last step then.
+    pub water: Option<StageWater>,
+    /// Rounds of openings and flow, of a stage whose apertures follow openings.
+    pub rounds: Option<Rounds>,
+}
+
+/// Water of a stage whose flow has a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageWater {
+    /// Time (s).
+    pub time: f64,
+    /// Water (m²) that entered and left at each inlet in this time, and rain that ran off.
+    pub sums: Vec<[f64; 3]>,
+    /// Water (m²) that the joints hold more at its end than at its start.
+    pub stored: f64,
+    /// Water (m²/s) that came out of the joints in the last step; negative: they filled.
+    pub drains: f64,
+}
+
+impl StageWater {
+    /// Water (m²) that entered and left at all inlets together, and rain that ran off.
+    pub fn totals(&self) -> [f64; 3] {
+        self.sums.iter().fold([0.0; 3], |sum, of| [0, 1, 2].map(|k| sum[k] + of[k]))
+    }
+
+    /// Water (m²) that entered and neither left nor is in the joints: rounding.
+    pub fn residual(&self) -> f64 {
+        let [entered, left, _] = self.totals();
+        entered - left - self.stored
+    }
 }

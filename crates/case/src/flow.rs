@@ -2,17 +2,18 @@
 
 use std::fmt;
 
-use serde::de::{IntoDeserializer, Visitor};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{IntoDeserializer, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::keys::shared::{HEIGHT, PLACE};
-use crate::keys::unit::{FLOW, METRE, NUMBER, RAIN, VISCOSITY};
+use crate::keys::unit::{FLOW, METRE, NUMBER, RAIN, SECOND, VISCOSITY};
 use crate::keys::{Range, Rule, keys, words};
 use crate::limits::RAIN_MAX;
 use crate::{CUT_LAW, Case, JointLaw, PointList, Stage, StageKind};
 
 /// Hydraulic apertures of joints.
-const APERTURE: Rule = Range::above(0.0).to(1.0).of(METRE).usual([1e-6, 2e-2], "joints have 1e-5 to 1e-3 m");
+pub(crate) const APERTURE: Rule = Range::above(0.0).to(1.0).of(METRE).usual([1e-6, 2e-2], "joints have 1e-5 to 1e-3 m");
 /// The same of a law, whose joints may be closed to water.
 pub(crate) const LAW_APERTURE: Rule = APERTURE
     .in_range(Range::from(0.0).to(1.0))
@@ -65,6 +66,17 @@ keys! {
         /// Dynamic viscosity (Pa s) of the water: flows go with its inverse, pressures do not depend on it.
         pub viscosity: f64 = 1e-3 =>
             Range::above(0.0).to(1e3).of(VISCOSITY).usual([1e-4, 1e-1], "water has 1e-3 Pa s").label("Viscosity"),
+        /// Whether apertures follow openings in static stages whose flow is steady: each time the rock has come to
+        /// rest, joints have the apertures of their openings, the flow is found again, and the rock relaxes on, until
+        /// both agree. If not, the apertures of a stage are those of its start.
+        pub coupled: bool = false,
+        /// Water (m³ for each m² of joint, hence m) that the rock beside joints gives as they drain and takes as they
+        /// fill, for stages with a time of flow: its porosity times half the spacing of joints. The joints themselves
+        /// hold their aperture; default: 0.
+        pub storage: f64 = 0.0 =>
+            Range::from(0.0).to(10.0).of(METRE).hint("the porosity of the rock times half the spacing of its joints")
+                .usual([1e-6, 0.3], "rock with a porosity of 0.5 % and joints 1 m apart has 2.5e-3 m").label("Storage")
+                .none_at_zero(),
     }
 }
 
@@ -114,6 +126,20 @@ keys! {
     }
 }
 
+keys! {
+    #[derive(Copy)]
+    /// Time in which the flow of a static stage goes on from that of the stage before.
+    pub struct FlowTime {
+        /// Time (s) of the flow, whatever the simulated time of the rock: levels, heads and rain go in it from those of
+        /// the stage before to those of this stage, evenly.
+        pub time: f64 =>
+            Range::above(0.0).to(1e12).of(SECOND).hint("an hour has 3600 s, a day 86400 s")
+                .usual([1.0, 1e10], "flow in joints takes minutes to years"),
+        /// Implicit steps in this time.
+        pub steps: u32 => Range::from(1.0).to(1e5).of(NUMBER).hint("24 are usual"),
+    }
+}
+
 words! {
     /// Water in joints while a dynamic stage goes on.
     #[derive(Default)]
@@ -133,20 +159,26 @@ words! {
 pub enum StageFlow {
     /// In a dynamic stage.
     InMotion(FlowInMotion),
+    /// In a static stage: on from the stage before, in a time.
+    Over(FlowTime),
 }
 
 impl<'de> Deserialize<'de> for StageFlow {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Reader;
-        impl Visitor<'_> for Reader {
+        impl<'de> Visitor<'de> for Reader {
             type Value = StageFlow;
 
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("\"hold\" or \"steady\"")
+                f.write_str("\"hold\", \"steady\" or a time of flow such as { time = 86400.0, steps = 24 }")
             }
 
             fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<StageFlow, E> {
                 FlowInMotion::deserialize(word.into_deserializer()).map(StageFlow::InMotion)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<StageFlow, A::Error> {
+                FlowTime::deserialize(MapAccessDeserializer::new(map)).map(StageFlow::Over)
             }
         }
         deserializer.deserialize_any(Reader)
@@ -154,6 +186,12 @@ impl<'de> Deserialize<'de> for StageFlow {
 }
 
 impl Stage {
+    /// Time of the flow in joints, of a static stage in which it is not steady.
+    pub fn flow_time(&self) -> Option<&FlowTime> {
+        let Some(StageFlow::Over(time)) = &self.flow else { return None };
+        Some(time)
+    }
+
     /// Internal steps after which a dynamic stage finds the steady flow again; none in stages that hold it.
     pub fn flow_steps(&self) -> Option<u64> {
         let is_steady = self.flow == Some(StageFlow::InMotion(FlowInMotion::Steady));
@@ -166,7 +204,8 @@ impl Case {
     /// where neither the law nor `[flow]` says so. Construction joints are closed.
     pub fn aperture(&self, name: &str, law: &JointLaw) -> Option<f64> {
         let shared = self.flow.as_ref().and_then(|flow| flow.aperture);
-        law.aperture.or(if name == CUT_LAW { Some(0.0) } else { shared })
+        let rough = law.mechanical().map(|mechanical| mechanical.min(law.smoothness() * mechanical * mechanical));
+        law.aperture.or(rough).or(if name == CUT_LAW { Some(0.0) } else { shared })
     }
 
     /// Least and greatest aperture (m) that openings may lead to; none where no joint conducts.

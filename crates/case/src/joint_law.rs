@@ -102,6 +102,17 @@ keys! {
         /// `flow.aperture`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub aperture: Option<f64> => crate::flow::LAW_APERTURE.label("Aperture"),
+        /// Mechanical aperture E (m) at the start of a Barton–Bandis joint, for `[flow]`: the hydraulic one is
+        /// E²/JRC^2.5 (µm; Barton, Bandis and Bakhtar 1985) and at most E, and openings add to E; in place of
+        /// `aperture`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub mechanical_aperture: Option<f64> =>
+            crate::flow::APERTURE.hint("1e-4 to 1e-3 m is usual; leave it out for `aperture`")
+                .label("Mechanical aperture"),
+        /// Uniaxial compressive strength σc (Pa) of the rock beside a Barton–Bandis joint, for `[flow]`: its mechanical
+        /// aperture at the start is JRC/5·(0.2σc/JCS - 0.1) mm; in place of `mechanical_aperture`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub intact_strength: Option<f64> => WALL.hint("JCS of fresh walls, more of weathered ones"),
     }
 }
 
@@ -124,6 +135,19 @@ impl JointLaw {
     /// Whether its strength is a curve over the normal stress, and not the line of Mohr and Coulomb.
     pub fn is_curved(&self) -> bool {
         self.kind != JointLawKind::MohrCoulomb
+    }
+
+    /// Mechanical aperture E (m) at the start, of a law that has one.
+    pub fn mechanical(&self) -> Option<f64> {
+        let (jrc, jcs) = (self.jrc.unwrap_or_default(), self.jcs.unwrap_or(f64::INFINITY));
+        let by_strength = |strength: f64| 1e-3 * jrc / 5.0 * (0.2 * strength / jcs - 0.1);
+        self.mechanical_aperture.or(self.intact_strength.map(by_strength))
+    }
+
+    /// Hydraulic aperture over the square of the mechanical one (1/m), by JRC.
+    pub fn smoothness(&self) -> f64 {
+        let jrc = self.jrc.unwrap_or_default();
+        1e6 / (jrc * jrc * jrc.sqrt())
     }
 
     /// A Mohr–Coulomb joint with friction (degrees) alone.

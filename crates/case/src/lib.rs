@@ -47,7 +47,7 @@ pub use domain::{Domain, JointTrace, Mesh};
 pub use drawing::{CURVE_TOLERANCE, Flip, Layer, LayerUse, Transform};
 pub use expand::{CUT_LAW, Expanded};
 pub use fix::{Axes, Fix};
-pub use flow::{Drain, Flow, FlowInMotion, Head, Rain, StageFlow};
+pub use flow::{Drain, Flow, FlowInMotion, FlowTime, Head, Rain, StageFlow};
 pub use fracture::{Fracture, RockFracture};
 pub use ground::{Axis, BaseMotion, FreeField, Quiet, RecordKeys};
 pub use ground_motion::GroundMotion;

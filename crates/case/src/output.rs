@@ -32,8 +32,8 @@ keys! {
         /// Whether to write VTU frames.
         pub frames: bool = true,
         /// Which pictures to draw: `true` for the usual ones (`model`, `deformed`, `history`, and at the end of each
-        /// stage `displacement_contours`, `joints`, `mean_stress_contours`, and `strength` of rock that can break),
-        /// `false` for none, or a list of exactly those to draw.
+        /// stage `displacement_contours`, `joints`, `mean_stress_contours`, `strength` of rock that can break, and
+        /// `flow` of water in joints), `false` for none, or a list of exactly those to draw.
         pub pictures: Pictures = Pictures::Usual(true),
     }
 }

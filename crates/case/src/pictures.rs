@@ -36,6 +36,9 @@ words! {
         MeanStressContours = "mean_stress_contours",
         /// `stage1_strength.png`: share of strength of the worst section of each block, of rock that can break.
         Strength = "strength",
+        /// `stage1_flow.png`: pressure head, flow and tables of the water that flows in joints, outcrops that seep, and
+        /// drains.
+        Flow = "flow",
     }
 }
 
@@ -51,7 +54,7 @@ pub enum Pictures {
 }
 
 /// Pictures of a run that names none.
-const USUAL: [PictureKind; 7] = [
+const USUAL: [PictureKind; 8] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
@@ -59,6 +62,7 @@ const USUAL: [PictureKind; 7] = [
     PictureKind::Joints,
     PictureKind::MeanStressContours,
     PictureKind::Strength,
+    PictureKind::Flow,
 ];
 
 impl Pictures {

@@ -76,7 +76,9 @@ keys! {
         /// that of `[water]`. What hosts have moved the level by ends with it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub water: Option<WaterSurface>,
-        /// Dynamic, with `[flow]`: `"hold"` (default) keeps the pressures of water in joints as the last static stage
+        /// With `[flow]`. Static: time of the flow, as `{ time = 86400.0, steps = 24 }`, in which it goes on from that
+        /// of the stage before; default: the steady flow; not in the first stage, before which there is none. Dynamic:
+        /// `"hold"` (default) keeps the pressures of water in joints as the last static stage
         /// found them, `"steady"` finds the steady flow again and again, through the apertures that it had there, as
         /// levels, heads, rain and drains follow a host or this stage.
         #[serde(default, skip_serializing_if = "Option::is_none")]

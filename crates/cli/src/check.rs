@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use enmm::model::case::keys::rounded;
 use enmm::model::{FlowSurvey, Simulation};
 use enmm_io::LoadedCase;
 use enmm_io::numbers::three_digits;
 use enmm_run::check::{BridgeRecord, Check};
+use enmm_run::drainage::{LawDrainage, SetConductivity};
 use enmm_run::rock_mass::RockMass;
 use enmm_run::{Folder, Observer};
 
@@ -141,6 +143,28 @@ fn flow(survey: &FlowSurvey) -> String {
     )
 }
 
+/// Conductivity of the rock mass along the joints of a set.
+fn conductivity(SetConductivity { set, aperture, spacing, conductivity }: &SetConductivity) -> String {
+    format!(
+        "{set}: conductivity {conductivity:.3e} m/s along its joints, of {} mm every {} m",
+        rounded(1e3 * aperture),
+        rounded(*spacing)
+    )
+}
+
+/// Time in which the joints of a law drain, and what it says of steady flow.
+fn drainage(LawDrainage { law, aperture, height, time }: &LawDrainage) -> String {
+    let unit = [("days", 86400.0), ("h", 3600.0), ("min", 60.0)].into_iter().find(|(_, size)| time >= size);
+    let (unit, size) = unit.unwrap_or(("s", 1.0));
+    format!(
+        "joint_law.{law}: a joint of {} mm drains over {} m in {:.3} {unit}; steady flow is enough where \
+         levels, heads and rain change more slowly",
+        rounded(1e3 * aperture),
+        rounded(*height),
+        time / size
+    )
+}
+
 fn table(found: &Check) -> String {
     let range = |values: &[f64]| match values {
         [first, .., last] => format!("{first:.6} to {last:.6}"),
@@ -180,6 +204,8 @@ fn table(found: &Check) -> String {
     lines.extend(found.records.iter().map(|motion| format!("record {}", motion.text())));
     lines.extend(bridges(&found.bridges));
     lines.extend(found.flow.iter().map(flow));
+    lines.extend(found.conductivities.iter().map(conductivity));
+    lines.extend(found.drain_times.iter().map(drainage));
     lines.extend(found.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.extend(found.notes.iter().map(|note| format!("note: {note}")));
     lines.join("\n")

@@ -11,6 +11,7 @@
 //! | bolts | [`BoltLine`] | [`BOLT_QUANTITIES`] |
 //! | supports | [`SupportPoint`] | |
 //! | water | [`WetEdge`] | |
+//! | joints in which water flows | [`FlowLine`] | [`FLOW_QUANTITIES`] |
 //! | energies and works | [`Ledger`] | [`ENERGIES`] |
 //! | sums at the end of a step | [`StepReport`] | [`REPORT_QUANTITIES`] |
 //! | sums for hosts | [`Totals`] | [`TOTALS`] |
@@ -25,6 +26,8 @@
 mod bolts;
 mod bonds;
 mod edges;
+mod flow;
+mod flow_doubts;
 mod joints;
 mod loops;
 mod sections;
@@ -43,6 +46,8 @@ pub use enmm::model::{
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};
 pub use bonds::{BondState, bond_states};
 pub use edges::edge_states;
+pub use flow::{DrainFlow, FLOW_QUANTITIES, FlowLine, Seep, WaterInJoints};
+pub use flow_doubts::{LiftedBlock, flow_doubts, lifted_blocks};
 pub use joints::{JOINT_QUANTITIES, JointPiece, Joints, SlipSince};
 pub use loops::{loops, node_loops};
 pub use sections::{RockSection, broken_sections, rock_sections};

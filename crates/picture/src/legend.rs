@@ -69,6 +69,10 @@ pub enum Sign {
     Port,
     /// The surface of water.
     Water,
+    /// A short level line.
+    Tick(Colour),
+    /// An outcrop that seeps.
+    Seep,
     /// A force.
     Arrow(Colour),
     /// A bolt.
@@ -170,6 +174,8 @@ fn draw_sign(sheet: &mut Sheet, sign: Sign, [left, y]: Pixel) -> f64 {
             sheet.line([left, y + 4.0], [right, y + 4.0], Style::line(WATER, 2.4));
             signs::draw_water_mark(sheet, [middle, y + 4.0]);
         }
+        Sign::Tick(colour) => sheet.line([middle - 7.0, y], [middle + 7.0, y], Style::line(colour, 2.6)),
+        Sign::Seep => signs::draw_seep(sheet, [middle, y]),
         Sign::Arrow(colour) => signs::draw_arrow(sheet, [left, y], [right, y], Style::line(colour, 2.4)),
         Sign::Bolt => signs::draw_bolt(sheet, [[left + 4.0, y], [right, y]], Style::line(ACCENT, 2.6)),
     }

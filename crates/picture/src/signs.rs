@@ -112,6 +112,12 @@ pub fn draw_water_mark(sheet: &mut Sheet, [x, y]: Pixel) {
     sheet.path(Path::closed(corners), Style::fill(WHITE).edged(WATER, 1.8));
 }
 
+/// Draws the triangle of an outcrop through which water seeps out of the rock.
+pub fn draw_seep(sheet: &mut Sheet, [x, y]: Pixel) {
+    let corners = [[x, y - 7.0], [x + 6.0, y + 4.0], [x - 6.0, y + 4.0]];
+    sheet.path(Path::closed(corners), Style::fill(WATER).edged(INK, 1.2));
+}
+
 /// Draws the mark of a monitor.
 pub fn draw_monitor(sheet: &mut Sheet, position: Pixel) {
     sheet.circle(position, 6.0, Style::fill(WHITE).edged(ACCENT, 2.2));

@@ -343,7 +343,7 @@ impl<'a> StageSheet<'a> {
     }
 
     /// Rock behind joints.
-    fn draw_rock(&mut self) {
+    pub fn draw_rock(&mut self) {
         let (snapshot, view) = (self.stage.snapshot, self.view);
         self.sheet.clipped(&view.area, |sheet| {
             draw_filled(sheet, &snapshot.elements, &view, &[ROCK], |_| 0);
@@ -369,7 +369,7 @@ impl<'a> StageSheet<'a> {
     }
 
     /// Ends with legends.
-    fn close_with(mut self, legends: &[Legend]) -> Picture {
+    pub fn close_with(mut self, legends: &[Legend]) -> Picture {
         let top = self.view.area.bottom() + BELOW_FRAME + 24.0;
         legend::draw_below(&mut self.sheet, legends, LEFT, top);
         self.sheet.cut(top + legend::height_below(legends) + MARGIN).finish()

@@ -8,11 +8,11 @@ use std::time::Instant;
 use crate::sample::{PROFILE, Sample, sample};
 use enmm::geometry::{Point, Vector};
 use enmm::model::ContactState;
-use enmm_observe::{BondState, Boundary, Polygons, Snapshot};
+use enmm_observe::{BondState, Boundary, DrainFlow, FlowLine, Polygons, Seep, Snapshot, WaterInJoints};
 use enmm_picture::{
     ModelAnnotations, Picture, Series, StageEnd, StageStart, covers_picture, displacement_contours,
-    displacement_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours, model_picture,
-    stage_displacement_picture, stress_picture, velocity_picture,
+    displacement_picture, flow_picture, history_picture, joint_stress_pictures, joints_picture, mean_stress_contours,
+    model_picture, stage_displacement_picture, stress_picture, velocity_picture,
 };
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
@@ -274,6 +274,51 @@ fn rock_bridges_show_which_hold_and_which_have_broken() {
     };
     assert!((said("broken bridge: ") / broken - 1.0).abs() < 0.01, "{} of {broken} m", said("broken bridge: "));
     assert!(said("bridge that holds: ") > 0.0);
+}
+
+/// A full joint, one with a water table in it, and a dry one; the first carries a thousand times as much as the second.
+#[test]
+fn water_in_joints_shows_heads_flows_tables_outcrops_and_drains() {
+    let slope = sample(12.0, 6.0);
+    let stage = StageEnd { title: "", caption: String::new(), snapshot: &slope.reference, bolts: &[], water: &[] };
+    let line = |[from, to]: [[f64; 2]; 2], [a, b]: [f64; 2], wet: [f64; 2], flow: f64| {
+        let reference = [from, to].map(Point::from);
+        let heads = [from[1] + a, to[1] + b];
+        FlowLine { ends: reference, reference, heads, wet, flow, ..FlowLine::default() }
+    };
+    let flow = WaterInJoints {
+        lines: vec![
+            line([[40.0, 5.0], [90.0, 5.0]], [20.0, 20.0], [0.0, 1.0], -1e-5),
+            line([[60.0, 10.0], [60.0, 30.0]], [5.0, 0.0], [0.0, 0.25], 1.5e-8),
+            line([[70.0, 20.0], [90.0, 40.0]], [0.0, 0.0], [0.0, 0.0], 0.0),
+        ],
+        seeps: vec![Seep { place: Point::new(40.0, 30.0), flow: 2e-6 }],
+        drains: vec![DrainFlow {
+            name: "row".to_owned(),
+            points: vec![Point::new(45.0, 20.0), Point::new(60.0, 22.0)],
+            flow: 5e-6,
+        }],
+    };
+    assert_eq!(flow.lines[1].table(), Some(Point::new(60.0, 15.0)));
+    assert!(flow.lines[0].table().is_none() && flow.lines[2].is_dry());
+    let picture = flow_picture(&stage, &flow);
+    check(&picture, "stage_flow.png");
+    let svg = picture.svg();
+    for text in ["row 0.300 L/min per m", "greatest 0.600 L/min per m", "seeping outcrop, all 0.120 L/min per m"] {
+        assert!(svg.contains(&format!(">{text}<")), "{text}");
+    }
+    for text in ["under pressure: 70.0 m", "without pressure: 28.3 m", "water table", "pressure head [m]"] {
+        assert!(svg.contains(&format!(">{text}<")), "{text}");
+    }
+    // The deepest colour of the scale at its greatest width, and the table at a quarter of the second joint.
+    let drawn = Drawn::all(&svg);
+    let deep = drawn.iter().find(|shape| shape.is("stroke-width", "6") && shape.is("stroke", "#fdeb4c"));
+    let deep = deep.expect("the full joint").middle();
+    assert_eq!(colour_at(&pixels(&picture), [deep[0] + 100.0, deep[1]]), "#fdeb4c");
+    assert!(drawn.iter().any(|shape| shape.is("stroke-width", "1.8")), "little flow is thin");
+    let dry = WaterInJoints { lines: flow.lines[2..].to_vec(), ..WaterInJoints::default() };
+    let dry = flow_picture(&stage, &dry);
+    assert!(!dry.svg().contains("NaN") && !dry.svg().contains("inf") && !dry.svg().contains("water table"));
 }
 
 #[test]

@@ -9,10 +9,10 @@ use enmm::model::case::{PictureKind, StageKind};
 use enmm::model::{Case, Simulation};
 use enmm_io::files::{at_path, copy_file};
 use enmm_observe::{
-    Joints, Polygons, Snapshot, broken_sections, moved_since, references, rock_sections, water_surface,
+    Joints, Polygons, Snapshot, WaterInJoints, broken_sections, moved_since, references, rock_sections, water_surface,
 };
 use enmm_picture::{
-    StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, history_picture,
+    StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture, history_picture,
     joint_stress_pictures, joints_picture, mean_stress_contours, model_annotations, model_picture, number_text,
     stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
 };
@@ -24,7 +24,7 @@ use crate::rows::{self, Histories};
 use crate::vtu::PARTS;
 
 /// Kinds of pictures of the end of a stage, and with what the rest of their names begins.
-const STAGE_PICTURES: [(PictureKind, &[&str]); 8] = [
+const STAGE_PICTURES: [(PictureKind, &[&str]); 9] = [
     (PictureKind::Displacement, &["displacement"]),
     (PictureKind::Joints, &["joints"]),
     (PictureKind::JointStress, &["normal_stress", "shear_stress"]),
@@ -33,6 +33,7 @@ const STAGE_PICTURES: [(PictureKind, &[&str]); 8] = [
     (PictureKind::DisplacementContours, &["displacement_contours"]),
     (PictureKind::MeanStressContours, &["mean_stress_contours"]),
     (PictureKind::Strength, &["strength"]),
+    (PictureKind::Flow, &["flow"]),
 ];
 
 /// Files by which a directory is known as that of a run.
@@ -209,6 +210,10 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
             PictureKind::Strength if simulation.model().breaking.is_none() => Vec::new(),
             PictureKind::Strength => {
                 vec![strength_picture(&stage, &rock_sections(simulation), &broken_sections(simulation))]
+            }
+            PictureKind::Flow => {
+                let flow = WaterInJoints::of(simulation);
+                flow.map(|flow| flow_picture(&stage, &flow)).into_iter().collect()
             }
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),

@@ -5,6 +5,7 @@ use std::io;
 
 use enmm::model::case::{Integrator, StageKind};
 use enmm::model::{Event, EventKind, Restless, Simulation};
+use enmm_observe::flow_doubts;
 use enmm_report::Note;
 
 use crate::recorder::Recorder;
@@ -55,7 +56,7 @@ impl Recorder {
         self.warn_of_unsettled(simulation)?;
         self.warn_of_shaking(simulation)?;
         self.warn_of_barred(simulation)?;
-        self.warn_of_drains(simulation)?;
+        self.warn_of_water(simulation)?;
         let stage = simulation.stage();
         let name = &stage.name;
         if stage.kind == StageKind::Static && converged && !restless.is_empty() {
@@ -114,11 +115,18 @@ impl Recorder {
         self.warn(simulation, text)
     }
 
-    /// Warns of pumps that run dry and of drains that give water.
-    fn warn_of_drains(&mut self, simulation: &Simulation) -> io::Result<()> {
+    /// Warns of pumps that run dry, of drains that give water, of joints that drain longer than their stage, of
+    /// apertures and openings that disagree, and of flow in joints that is in doubt.
+    fn warn_of_water(&mut self, simulation: &Simulation) -> io::Result<()> {
         let name = &simulation.stage().name;
-        let texts = simulation.dry_drains().into_iter().map(|doubt| format!("stage {name:?}: {doubt}"));
-        texts.collect::<Vec<_>>().into_iter().try_for_each(|text| self.warn(simulation, text))
+        let mut doubts = simulation.dry_drains();
+        doubts.extend(simulation.unfinished_drainage());
+        doubts.extend(simulation.unsettled_apertures());
+        if simulation.stage().kind == StageKind::Static {
+            doubts.extend(flow_doubts(simulation));
+        }
+        let texts: Vec<String> = doubts.into_iter().map(|doubt| format!("stage {name:?}: {doubt}")).collect();
+        texts.into_iter().try_for_each(|text| self.warn(simulation, text))
     }
 
     /// Warns of joints that have slipped when the ground has shaken: their slip depends on the mesh.

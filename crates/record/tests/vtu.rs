@@ -7,9 +7,12 @@ use std::path::{Path, PathBuf};
 
 use crate::sample::{Sample, sample};
 use enmm::geometry::{Point, Vector};
-use enmm_observe::{BoltCondition, BoltLine, BondState, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge};
+use enmm_observe::{
+    BoltCondition, BoltLine, BondState, FlowLine, JointPiece, Snapshot, SupportKind, SupportPoint, WetEdge,
+};
 use enmm_record::vtu::{
-    Part, PvdWriter, Structures, write_bolts_vtu, write_joints_vtu, write_supports_vtu, write_vtu, write_water_vtu,
+    Part, PvdWriter, Structures, write_bolts_vtu, write_flow_vtu, write_joints_vtu, write_supports_vtu, write_vtu,
+    write_water_vtu,
 };
 use roxmltree::{Document, Node};
 
@@ -187,6 +190,8 @@ fn bolts_supports_and_water_come_back_as_they_were() {
         ..SupportPoint::default()
     });
     let water = [WetEdge { ends, block: 7, pressure: [0.0, 1e4] }];
+    let flow = [FlowLine { ends, reference: ends, block: 7, heads: [5.0, 4.5], flow: -1e-6, ..FlowLine::default() }];
+    write_flow_vtu(&flow, 1.0, &directory.join("flow.vtu")).unwrap();
     let names = ["row 1".to_owned(), "row 2".to_owned()];
     write_bolts_vtu(&bolts, &names, 1.0, &directory.join("bolts.vtu")).unwrap();
     write_supports_vtu(&supports, &names, 1.0, &directory.join("supports.vtu")).unwrap();
@@ -206,6 +211,11 @@ fn bolts_supports_and_water_come_back_as_they_were() {
     assert_eq!(numbers(&document, "water_pressure"), [0.0, 1e4]);
     assert_eq!(integers(&document, "block"), [7]);
     assert_eq!(numbers(&document, "Points"), [1.0, 2.0, 0.0, 3.0, 4.0, 0.0]);
+    let text = read("flow.vtu");
+    let document = Document::parse(&text).unwrap();
+    assert_eq!(numbers(&document, "pressure_head"), [3.0, 0.5]);
+    assert_eq!((numbers(&document, "head"), numbers(&document, "flow")), (vec![4.75], vec![-1e-6]));
+    assert_eq!(integers(&document, "block"), [7]);
 }
 
 /// meshio rejects a file without cells, so an empty grid has one cell that has no points.

@@ -226,6 +226,8 @@ pub enum Note {
     },
     /// A block has broken in two.
     Break(Break),
+    /// Water that flows in the joints from this time on.
+    Water(Water),
     /// Trials of a factor of safety.
     Trials(TrialTable),
     /// Blocks to mark on the slope, such as a failing mass.
@@ -281,6 +283,48 @@ pub struct Break {
     pub shear: f64,
     /// Bending moment (N).
     pub moment: f64,
+}
+
+/// Water that flows in the joints of a model.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Water {
+    /// Name of the stage that has found it.
+    pub stage: String,
+    /// Ends and crossings of joints: x, y in the reference configuration and pressure head (m).
+    pub nodes: Vec<[f64; 3]>,
+    /// Pieces of joint that conduct: nodes at both ends, number of a block beside it, and the flow (m²/s) from the
+    /// first to the second node.
+    pub pieces: Vec<(u32, u32, u32, f64)>,
+    /// Outcrops through which water leaves into the air: x, y (m) and the flow (m²/s).
+    pub seeps: Vec<[f64; 3]>,
+    /// Drains that act.
+    pub drains: Vec<WaterDrain>,
+    /// Water at each place where it enters and leaves.
+    pub inlets: Vec<WaterInlet>,
+}
+
+/// A drain that acts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaterDrain {
+    /// Name.
+    pub name: String,
+    /// Its points (m), the mouth first.
+    pub points: Vec<[f64; 2]>,
+    /// Flow (m²/s) that it takes.
+    pub flow: f64,
+}
+
+/// Water that enters and leaves at one place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaterInlet {
+    /// Name of the head, rain or drain; `reservoir` or `air`.
+    pub name: String,
+    /// Water (m²/s) that enters the joints.
+    pub enters: f64,
+    /// Water (m²/s) that leaves them.
+    pub leaves: f64,
+    /// Rain (m²/s) that runs off.
+    pub runs_off: f64,
 }
 
 /// A row of [`Note::Facts`] or [`Note::Changes`].

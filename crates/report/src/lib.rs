@@ -22,7 +22,8 @@ mod writer;
 pub use block::{MOTION, QUANTUM};
 pub use data::{
     Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Break, Column, EdgeState, Fact, Frame, Head, Marked,
-    MonitorFrame, MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable,
+    MonitorFrame, MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable, Water, WaterDrain,
+    WaterInlet,
 };
 pub use error::FilmError;
 pub use page::{edit_page, live_page, write_page};

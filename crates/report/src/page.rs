@@ -29,6 +29,12 @@ const SCRIPTS: [&str; 8] = [
 const BREAKS: &str = include_str!("../viewer/breaks.js");
 /// How a note of such a block begins.
 const BREAK: &[u8] = br#"{"note":"break""#;
+/// The script of films that tell of water which flows in joints, behind the others.
+const FLOW: &str = include_str!("../viewer/flow.js");
+/// How a note of such water begins.
+const WATER: &[u8] = br#"{"note":"water""#;
+/// Scripts of a film beside those of all, and how the notes begin that ask for them.
+const ADDED: [(&str, &[u8]); 2] = [(BREAKS, BREAK), (FLOW, WATER)];
 
 /// Places in the page that are filled in.
 const HOLES: [&str; 3] = ["/*style*/", "/*script*/", "<!--film-->"];
@@ -45,27 +51,30 @@ pub fn write_page(film: &Path, page: &Path) -> Result<(), FilmError> {
     let at = FilmError::at(page);
     let (unfinished, file) = Unfinished::beside(page).map_err(&at)?;
     let mut out = BufWriter::new(file);
-    let before = &halves(false)[0];
+    let before = &halves([false; 2])[0];
     out.write_all(before.as_bytes()).map_err(&at)?;
     out.write_all(b"<script type=\"application/octet-stream;base64\" id=\"film\">").map_err(&at)?;
     let mut text = EncoderWriter::new(&mut out, &STANDARD);
     text.write_all(&MAGIC).map_err(&at)?;
-    let mut breaks = false;
+    let mut added = [false; 2];
     while let Some(chunk) = chunks.next().map_err(no_film)? {
-        breaks |= chunk.kind == Kind::Note && chunk.body().map_err(no_film)?.starts_with(BREAK);
+        if chunk.kind == Kind::Note {
+            let note = chunk.body().map_err(no_film)?;
+            added.iter_mut().zip(ADDED).for_each(|(there, (_, begin))| *there |= note.starts_with(begin));
+        }
         text.write_all(&chunk.bytes).map_err(&at)?;
     }
     text.finish().map_err(&at)?;
     drop(text);
     out.write_all(b"</script>").map_err(&at)?;
-    out.write_all(halves(breaks)[1].as_bytes()).map_err(&at)?;
+    out.write_all(halves(added)[1].as_bytes()).map_err(&at)?;
     out.into_inner().map_err(|error| at(error.into_error()))?;
     unfinished.finish().map_err(&at)
 }
 
 /// The page without a film, which requests one from its server.
 pub fn live_page() -> String {
-    halves(true).concat()
+    halves([true; 2]).concat()
 }
 
 /// The page of `enmm edit`, which shows the pages of models as they are built.
@@ -73,11 +82,11 @@ pub fn edit_page() -> &'static str {
     EDITOR
 }
 
-/// The page before and behind the film, for films that tell of breaks or others.
-fn halves(breaks: bool) -> [String; 2] {
+/// The page before and behind the film, with those of the scripts beside those of all that it needs.
+fn halves(added: [bool; 2]) -> [String; 2] {
     let [style, script, film] = HOLES;
-    let of_breaks = if breaks { BREAKS } else { "" };
-    let scripts = SCRIPTS.concat() + of_breaks;
+    let needed = ADDED.iter().zip(added).filter(|(_, needed)| *needed);
+    let scripts = SCRIPTS.concat() + &needed.map(|((script, _), _)| *script).collect::<String>();
     let page = PAGE.replace(style, STYLE).replace(script, &scripts);
     let (before, after) = page.split_once(film).unwrap_or((&page, ""));
     [before.to_owned(), after.to_owned()]

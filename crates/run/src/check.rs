@@ -9,8 +9,10 @@ use enmm::model::assemble::{Breaking, Bridge, ignored_traces};
 use enmm::model::case::GroundMotion;
 use enmm::model::tables::Workspace;
 use enmm::model::{FlowSurvey, Simulation, State};
+use enmm_observe::flow_doubts;
 use enmm_stability::corners::weak_corners;
 
+use crate::drainage::{LawDrainage, SetConductivity, conductivities, drain_times};
 use crate::rock_mass::{RockMass, rock_masses};
 use enmm_record::changes::{CrumbRecord, TraceEndRecord};
 
@@ -86,6 +88,12 @@ pub struct Check {
     /// Joints in which water flows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowSurvey>,
+    /// Conductivity along the joints of each set in which water flows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub conductivities: Vec<SetConductivity>,
+    /// Time in which joints of each law drain.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drain_times: Vec<LawDrainage>,
     /// What the build has changed in the drawing.
     pub notes: Vec<String>,
     /// Warnings for the user.
@@ -133,8 +141,10 @@ pub fn check(simulation: &Simulation, warnings: &[String]) -> Check {
         records: simulation.case().ground_motions(),
         bridges: built.bridges.iter().map(BridgeRecord::of).collect(),
         flow: simulation.flow_survey(),
+        conductivities: conductivities(simulation),
+        drain_times: drain_times(simulation),
         notes: built.notes.iter().cloned().chain(corner_note(simulation)).collect(),
-        warnings: warnings.iter().chain(&built.warnings).cloned().collect(),
+        warnings: warnings.iter().chain(&built.warnings).cloned().chain(flow_doubts(simulation)).collect(),
     }
 }
 

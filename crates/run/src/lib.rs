@@ -3,6 +3,7 @@
 
 mod bound;
 pub mod check;
+pub mod drainage;
 mod ensemble;
 pub mod fos;
 mod found;

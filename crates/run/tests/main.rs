@@ -4,6 +4,7 @@ mod coupled_run;
 mod default_stiffness;
 #[path = "../../../tests/common/extent.rs"]
 mod extent;
+mod flow_checks;
 mod flow_of_stages;
 mod issue_a_block_on_a_joint_was_in_free_flight;
 mod issue_a_slide_before_the_trials_passed_as_rest;

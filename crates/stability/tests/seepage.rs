@@ -2,6 +2,8 @@
 //! both limit analysis and strength reduction give the factor of Hoek and Bray with it.
 
 use crate::common::{case, example};
+use enmm::model::Simulation;
+use enmm::model::tables::{FlowPiece, wet};
 use enmm_stability::limit_analysis::{BoundError, bound, continuum::bracket};
 use enmm_stability::strength_reduction::{ReductionOptions, factor_of_safety};
 
@@ -37,13 +39,18 @@ fn slide(apertures: &[f64]) -> String {
     )
 }
 
-/// Length of the plane (m), and the factor of Hoek and Bray with an uplift (N/m) on it.
+/// The factor of Hoek and Bray with an uplift (N/m) on the plane, by its length (m).
 fn factor(uplift: impl Fn(f64) -> f64) -> f64 {
+    factor_at(WATER, uplift)
+}
+
+/// The same with water in the crack up to a height (m).
+fn factor_at(water: f64, uplift: impl Fn(f64) -> f64) -> f64 {
     let length = FOOT[0].hypot(FOOT[1]);
     let (s, c) = (FOOT[1] / length, FOOT[0] / length);
     let crest = 17.3205081;
     let area = 0.5 * (FOOT[0] * 30.0 - FOOT[1] * FOOT[0] + 30.0 * (FOOT[0] - crest));
-    let (weight, push) = (2650.0 * 9.81 * area, 0.5 * 9810.0 * (WATER - FOOT[1]).powi(2));
+    let (weight, push) = (2650.0 * 9.81 * area, 0.5 * 9810.0 * (water - FOOT[1]).powi(2));
     let normal = weight * c - uplift(length) - push * s;
     (25e3 * length + normal * 35f64.to_radians().tan()) / (weight * s + push * c)
 }
@@ -95,6 +102,46 @@ fn strength_reduction_keeps_the_pressures_of_the_slope_at_rest() {
     assert!((factor / exact - 1.0).abs() < 5e-3, "{factor} instead of {exact}");
 }
 
+/// Uplift (N/m) of the water in the plane now.
+fn uplift_of(simulation: &Simulation) -> f64 {
+    let net = simulation.model().flow.as_ref().expect("a net");
+    let unknowns = &simulation.state().seepage.as_ref().expect("water that flows").unknowns;
+    let of = |piece: &FlowPiece| {
+        let [a, b] = piece.nodes.map(|node| net.places[node as usize]);
+        let part = wet(piece.nodes.map(|node| unknowns[node as usize]), [a.y, b.y]).filter(|_| a.x != b.x);
+        part.map_or(0.0, |part| {
+            0.5 * (part.heads[0] + part.heads[1]) * (part.span[1] - part.span[0]).abs() * piece.length
+        })
+    };
+    9810.0 * net.pieces.iter().map(of).sum::<f64>()
+}
+
+/// The crack has drained by 3 m in 500 s, and the plane, whose faces close as its pressure falls, lags behind.
+#[test]
+fn strength_reduction_has_the_pressures_at_the_end_of_a_time() {
+    let stage = "[[stage]]\nname = \"later\"\nkind = \"static\"\nduration = 60.0\nheads = { crack = 25.0 }\n";
+    let text = slide(&[1e-4])
+        .replace("aperture_min = 1e-6", "aperture_min = 1e-4\naperture_max = 1e-2")
+        .replace("cohesion = 25e3", "cohesion = 25e3\nnormal_stiffness = 1e9\nshear_stiffness = 1e9");
+    let steady = format!("{text}{stage}");
+    let later = format!("{text}{stage}flow = {{ time = 500.0, steps = 10 }}\n");
+    let begun = |text: &str| {
+        let mut simulation = Simulation::new(case(text)).expect("a model");
+        let before = uplift_of(&simulation);
+        assert!(simulation.next_stage().expect("a stage"));
+        (before, uplift_of(&simulation))
+    };
+    let ((before, end), (_, lags)) = (begun(&steady), begun(&later));
+    println!("U {before:.4e}, {lags:.4e} after 500 s, {end:.4e} at last");
+    assert!(lags < 0.95 * before && lags > 1.1 * end);
+    let exact = factor_at(25.0, |_| lags);
+    let found = factor_of_safety(&case(&later), &ReductionOptions::default(), &mut |_, _| {});
+    let factor = found.unwrap_or_else(|e| panic!("{e}")).factor().expect("a factor");
+    println!("{factor:.4} of {exact:.4}, {:.4} at last", factor_at(25.0, |_| end));
+    assert!((factor / exact - 1.0).abs() < 5e-3, "{factor} instead of {exact}");
+    assert!((factor_at(25.0, |_| end) / exact - 1.0).abs() > 1e-2, "the lag shows");
+}
+
 #[test]
 fn rock_that_yields_has_no_bracket_with_water_that_flows() {
     let text = slide(&[1e-4]).replace("young = 20e9", "young = 20e9\nfriction_deg = 40\ncohesion = 1e6");
@@ -102,4 +149,22 @@ fn rock_that_yields_has_no_bracket_with_water_that_flows() {
         Err(BoundError::Case(invalid)) => assert!(invalid.key == "flow" && invalid.message.contains("bracket")),
         other => panic!("{other:?}"),
     }
+}
+
+/// With stiff joints apertures stay as they were; with soft ones the weight has closed them before the second stage,
+/// more at depth, and the trials have other water than limit analysis, which knows no openings.
+#[test]
+fn other_water_in_trials_than_in_limit_analysis_is_told() {
+    let text = slide(&[1e-4; 4]);
+    let again = text.split("[[stage]]").nth(1).expect("a stage").replace("gravity", "again");
+    let told = |stiffness: f64| {
+        let law = format!("friction_deg = 35.0\nnormal_stiffness = {stiffness:e}\nshear_stiffness = {stiffness:e}\n");
+        let text = text.replace("friction_deg = 35.0\n", &law) + "[[stage]]" + &again;
+        let options = ReductionOptions { tolerance: 0.5, ..ReductionOptions::default() };
+        let found = factor_of_safety(&case(&text), &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+        found.warnings.iter().find(|warning| warning.starts_with("water presses on the joints")).cloned()
+    };
+    assert_eq!(told(1e12), None);
+    let warning = told(1e10).expect("a warning");
+    assert!(warning.contains("aperture_min"), "{warning}");
 }

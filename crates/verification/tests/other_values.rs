@@ -155,3 +155,15 @@ fn long_e2_a_wall_rests_for_a_minute() {
 fn long_d6_roof_wedge() {
     assert_all("D6", &["", "rows=14", "a_deg=30 phi_deg=35 ratio=5", "a_deg=12 phi_deg=50 ratio=0.5 height=5 ks=2e8"]);
 }
+
+/// Flows, heads and uplift are those of their closed forms for other lengths, heads, apertures and places.
+#[test]
+fn water_in_joints() {
+    assert_all("W1", &["length=37 left=6 right=9.3 ratio=0.4 meets=0.71", "aperture=8e-4 below=12 ratio=5"]);
+    assert_all("W3", &["width=7 head=3 drain=0.8 aperture=5e-4", "width=120 head=90 drain=0.07"]);
+    assert_all("W4", &["length=13 upper=6 lower=0 spacing=2 conductivity=1e-4", "upper=12 lower=7 length=9.5"]);
+    assert_all("W5", &["aperture=4e-4 share=1 storm=40", "length=30 river=6 mound=8"]);
+    assert_all("W8", &["water=2 clogged=0.6 plane_deg=40", "height=80 crack=20 water=15 clogged=0.4"]);
+    assert_all("W9", &["level=0.3 dip_deg=12", "level=1.2 height=30 dip_deg=40"]);
+    assert_all("W13", &["length=50 head=4 well=0.8 share=0.9", "aperture=6e-4 well=0.1 greedy=20"]);
+}

@@ -1,8 +1,8 @@
 //! The page of all numbers that outputs show, written from the tables of quantities.
 
 use enmm_observe::{
-    BLOCK_QUANTITIES, BOLT_QUANTITIES, ENERGIES, INLET_QUANTITIES, JOINT_QUANTITIES, MONITOR_QUANTITIES,
-    PORT_QUANTITIES, Quantity, REPORT_QUANTITIES, STRENGTH_QUANTITIES, STRESS_QUANTITIES, TOTALS,
+    BLOCK_QUANTITIES, BOLT_QUANTITIES, ENERGIES, FLOW_QUANTITIES, INLET_QUANTITIES, JOINT_QUANTITIES,
+    MONITOR_QUANTITIES, PORT_QUANTITIES, Quantity, REPORT_QUANTITIES, STRENGTH_QUANTITIES, STRESS_QUANTITIES, TOTALS,
 };
 
 /// Path of the page in the repository.
@@ -72,6 +72,8 @@ pub fn page() -> String {
     );
     page += &part("Elements", "Numbers of the stress in frames for ParaView and in pictures.", "", &STRESS_QUANTITIES);
     page += &part("Joints", "Numbers of a piece of joint in frames and pictures.", "", &JOINT_QUANTITIES);
+    page +=
+        &part("Water in joints", "Numbers of a piece of joint in which water flows, in frames.", "", &FLOW_QUANTITIES);
     page += &part("Bolts", "Numbers of a free length of a bolt in frames and pictures.", "", &BOLT_QUANTITIES);
     page
 }

@@ -5,7 +5,7 @@ use enmm_seepage::Condition;
 use crate::contact::{Boundary, EdgeId, Facings, LawId};
 use crate::flow::{self, FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside, is_open};
 use crate::geometry::{Point, segment};
-use crate::model::case::{self, Case, Flow, Head, Invalid};
+use crate::model::case::{self, Case, Flow, Head, Invalid, JointLaw};
 use crate::state::{Model, Water};
 
 use super::joints::Joints;
@@ -30,9 +30,11 @@ pub(super) fn net(
         return Err(invalid("flow", "has no effect: no joint parts blocks; add joints or remove [flow]".into()));
     }
     net.range = range;
-    net.viscosity = keys.viscosity;
+    (net.viscosity, net.storage, net.coupled) = (keys.viscosity, keys.storage, keys.coupled);
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
+    let rough = |law: &JointLaw| law.mechanical().map(|mechanical| [mechanical, law.smoothness()]);
+    net.mechanical = case.joint_laws.values().map(rough).collect();
     net.heads = heads(case, &net, faces.tolerance)?;
     net.rains = super::rain::rains(case, &net, faces.tolerance)?;
     net.drains = super::drains::drains(case, &net, &lines, faces.tolerance)?;
@@ -118,6 +120,8 @@ fn refuse_tight(case: &Case, net: &FlowNet) -> Result<(), Invalid> {
 
 /// Share of the joints that may have no outlet before the user is told.
 const ISOLATED_SHARE: f64 = 0.05;
+/// Greatest over least transmissivity above which flows of tight joints are lost in the rounding of heads.
+const CONTRAST_MAX: f64 = 1e12;
 /// Difference of heads (m) that is none.
 const EQUAL: f64 = 1e-9;
 
@@ -147,6 +151,7 @@ pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
         );
     }
     warnings.extend(isolated(net, &stages[0]));
+    warnings.extend(contrast(net));
     if model.water.as_ref().is_some_and(|water| water.in_rock) && model.strengths.iter().flatten().any(|s| s.is_porous)
     {
         warnings.push(
@@ -156,6 +161,20 @@ pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
         );
     }
     warnings
+}
+
+/// Joints of very different transmissivity.
+fn contrast(net: &FlowNet) -> Option<String> {
+    let apertures = net.pieces.iter().map(|piece| net.apertures[piece.law.index()]).filter(|aperture| *aperture > 0.0);
+    let (low, high) = apertures.fold((f64::INFINITY, 0.0_f64), |(low, high), e| (low.min(e), high.max(e)));
+    let contrast = (high / low).powi(3);
+    (contrast > CONTRAST_MAX).then(|| {
+        format!(
+            "flow: apertures from {low:e} to {high:e} m give transmissivities that differ by a factor of \
+             {contrast:.1e}, more than {CONTRAST_MAX:e}, so that flows of the tight joints are lost in the rounding of \
+             heads: give them aperture = 0, which closes them to water, or raise the least aperture"
+        )
+    })
 }
 
 /// Condition at a node.

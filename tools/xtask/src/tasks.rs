@@ -10,7 +10,7 @@ const BENCHMARK: &str = "tools/bench";
 /// A run that draws contours.
 const CONTOURS: &str = "run --set output.pictures=[\"displacement_contours\",\"mean_stress_contours\"]";
 /// Pictures of the README and of the tutorials: command, case, picture of its results, and its place in `docs`.
-const PICTURES: [[&str; 4]; 20] = [
+const PICTURES: [[&str; 4]; 23] = [
     ["run", "fractured_slope", "model.png", "pictures/model.png"],
     ["run", "fractured_slope", "deformed.png", "pictures/deformed.png"],
     ["run", "fractured_slope", "history.png", "pictures/history.png"],
@@ -28,6 +28,9 @@ const PICTURES: [[&str; 4]; 20] = [
     ["run", "pit", "deformed.png", "book/pictures/pit_deformed.png"],
     ["run", "pit", "stage4_joints.png", "book/pictures/pit_joints.png"],
     ["fos", "pit", "failure.png", "book/pictures/pit_failure.png"],
+    ["run", "../flow/drained_bench", "stage2_flow.png", "book/pictures/drained_bench_flow.png"],
+    ["run", "../flow/storm", "stage2_flow.png", "book/pictures/storm_flow.png"],
+    ["run", "../flow/drawdown", "stage4_flow.png", "book/pictures/drawdown_flow.png"],
     ["run", "../breaking/overhang", "deformed.png", "book/pictures/overhang_deformed.png"],
     ["run", "../breaking/columns", "deformed.png", "book/pictures/columns_deformed.png"],
     ["run", "../breaking/slab", "deformed.png", "book/pictures/slab_deformed.png"],

@@ -4,7 +4,7 @@ use super::checks::{Names, each, points, segment, unique};
 use super::ports::word;
 use crate::key::{Check, Key, fail};
 use crate::keys::Plain;
-use crate::{Case, Drain, Flow, Head, Integrator, Rain, Stage, StageFlow, StageKind};
+use crate::{Case, Drain, Flow, Head, Integrator, JointLaw, Rain, Stage, StageFlow, StageKind};
 
 /// Names of places in results that are no heads.
 pub const PLACES: [&str; 2] = ["reservoir", "air"];
@@ -98,9 +98,17 @@ fn refuse_alone(root: &Key, case: &Case) -> Check {
     if let Some((table, _)) = tables.into_iter().find(|(_, is_empty)| !is_empty) {
         return fail(&root.field(table).index(0), format!("has no effect without [flow], which it is for; {remedy}"));
     }
-    match case.joint_laws.iter().find(|(_, law)| law.aperture.is_some()) {
-        Some((name, _)) => {
-            let key = root.field("joint_law").field(name).field("aperture");
+    let keys = |law: &JointLaw| {
+        [
+            ("aperture", law.aperture),
+            ("mechanical_aperture", law.mechanical_aperture),
+            ("intact_strength", law.intact_strength),
+        ]
+    };
+    let given = case.joint_laws.iter().flat_map(|(name, law)| keys(law).map(|(key, value)| (name, key, value)));
+    match given.into_iter().find(|(.., value)| value.is_some()) {
+        Some((name, field, _)) => {
+            let key = root.field("joint_law").field(name).field(field);
             fail(&key, format!("has no effect without [flow], which it is for; {remedy}"))
         }
         None => Ok(()),
@@ -131,8 +139,12 @@ fn validate_apertures(root: &Key, flow: &Flow, case: &Case) -> Check {
     let outside = laws().filter_map(|(name, aperture)| Some((name, aperture.filter(|e| *e > 0.0)?)));
     match outside.clone().find(|(_, aperture)| !(low..=high).contains(aperture)) {
         Some((name, aperture)) => {
-            let own = case.joint_laws[name].aperture.is_some();
-            let key = if own { root.field("joint_law").field(name).field("aperture") } else { key.field("aperture") };
+            let law = &case.joint_laws[name];
+            let key = match (law.aperture, law.mechanical()) {
+                (Some(_), _) => root.field("joint_law").field(name).field("aperture"),
+                (None, Some(_)) => root.field("joint_law").field(name),
+                (None, None) => key.field("aperture"),
+            };
             let message = format!(
                 "is {} m, must be at least {} m and at most {} m: flow.aperture_min and flow.aperture_max; widen that \
                  range, or correct it",
@@ -183,12 +195,12 @@ pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> 
             return fail(&own, message);
         }
     }
-    validate_course(key, stage, case)?;
+    validate_course(key, place, stage, case)?;
     refuse_idle_drains(&drain, place, stage, case)
 }
 
 /// Checks how water in joints goes on in a stage.
-fn validate_course(key: &Key, stage: &Stage, case: &Case) -> Check {
+fn validate_course(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
     if let Some(every) = stage.flow_every.filter(|_| stage.flow_steps().is_none()) {
         let message = format!("is {every}, and has no effect without `flow = \"steady\"`; add that, or remove it");
         return fail(&key.field("flow_every"), message);
@@ -208,6 +220,17 @@ fn validate_course(key: &Key, stage: &Stage, case: &Case) -> Check {
             fail(&key, message)
         }
         StageFlow::InMotion(_) => Ok(()),
+        StageFlow::Over(_) if stage.kind == StageKind::Dynamic => fail(
+            &key,
+            "has a time, but only static stages have it and this one is dynamic; write `flow = \"steady\"`, or \
+             remove it",
+        ),
+        StageFlow::Over(_) if place == 0 => fail(
+            &key,
+            "has a time, and is in the first stage, before which there is no flow that could go on; let a stage \
+             without it come first, which finds the steady flow",
+        ),
+        StageFlow::Over(time) => time.check(&key),
     }
 }
 

@@ -15,7 +15,13 @@ const RESIDUAL: Rule =
 pub fn validate_kind(key: &Key, law: &JointLaw) -> Check {
     match law.kind {
         JointLawKind::MohrCoulomb => {
-            let given = [("jrc", law.jrc), ("jcs", law.jcs), ("closure_max", law.closure_max)];
+            let given = [
+                ("jrc", law.jrc),
+                ("jcs", law.jcs),
+                ("closure_max", law.closure_max),
+                ("mechanical_aperture", law.mechanical_aperture),
+                ("intact_strength", law.intact_strength),
+            ];
             let foreign = given.into_iter().find(|(_, value)| value.is_some()).map(|(name, _)| name);
             foreign.map_or(Ok(()), |name| {
                 let remedy = "remove it, or set `kind = \"barton_bandis\"`";
@@ -62,7 +68,32 @@ fn validate_rough(key: &Key, law: &JointLaw) -> Check {
         );
         return fail(&key.field("dilation_deg"), message);
     }
-    Ok(())
+    validate_mechanical(key, law)
+}
+
+/// Checks that one key at most gives the aperture, and that the mechanical one is above 0.
+fn validate_mechanical(key: &Key, law: &JointLaw) -> Check {
+    let given = [
+        ("aperture", law.aperture),
+        ("mechanical_aperture", law.mechanical_aperture),
+        ("intact_strength", law.intact_strength),
+    ];
+    let mut names = given.into_iter().filter(|(_, value)| value.is_some()).map(|(name, _)| name);
+    if let (Some(first), Some(second)) = (names.next(), names.next()) {
+        let message = format!("gives the aperture, and so does `{first}`; remove one of both");
+        return fail(&key.field(second), message);
+    }
+    match law.mechanical() {
+        Some(mechanical) if mechanical.is_nan() || mechanical <= 0.0 => {
+            let strength = law.intact_strength.unwrap_or_default();
+            let message = format!(
+                "is {strength} Pa, and gives a mechanical aperture of {mechanical} m, which must be greater than 0: \
+                 give more than half of `jcs`, with a `jrc` above 0, or `aperture`"
+            );
+            fail(&key.field("intact_strength"), message)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks that energies of fracture have a strength to take.

@@ -1,6 +1,7 @@
 //! Blocks and frames of a model for the film of the page `report.html`.
 
 mod structures;
+mod water;
 
 use std::collections::BTreeSet;
 use std::io;
@@ -51,6 +52,8 @@ pub struct Film {
     breaks: Option<usize>,
     /// Sections of rock whose break has been noted.
     noted: usize,
+    /// Unknowns of the flow in joints that was noted last.
+    flow: Vec<f64>,
 }
 
 /// Opening of a film beside the case and its model.
@@ -94,7 +97,7 @@ impl Film {
         let can_have_older = until.is_some() && simulation.model().breaking.is_some();
         let breaks = (!can_have_older).then(|| simulation.cuts().len());
         let (writer, page) = (writer.map_err(refused)?, directory.join(PAGE));
-        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0 })
+        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0, flow: Vec::new() })
     }
 
     /// Appends the model as it is now.
@@ -112,6 +115,7 @@ impl Film {
     pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         let simulation = &*simulation.cut_ahead();
         self.follow_breaks(simulation, time)?;
+        self.note_flow(simulation, time)?;
         let displacement = |&point: &EdgeId| {
             let sample = simulation.model().boundary.sample(point, &simulation.state().displacement);
             [sample.x, sample.y]
@@ -159,6 +163,16 @@ impl Film {
         Ok(())
     }
 
+    /// Notes the flow in joints when it is another than that of the last note.
+    fn note_flow(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
+        let Some(seepage) = &simulation.state().seepage else { return Ok(()) };
+        if self.flow == seepage.unknowns {
+            return Ok(());
+        }
+        self.flow.clone_from(&seepage.unknowns);
+        water::water(simulation).map_or(Ok(()), |water| self.note(time, &Note::Water(water)))
+    }
+
     /// Appends a frame in which every block has a rigid motion: displacement of its centroid (m) and rotation (rad).
     ///
     /// # Errors
@@ -169,6 +183,7 @@ impl Film {
         time: f64,
         motion: impl Fn(usize) -> (Vector, f64),
     ) -> io::Result<()> {
+        self.note_flow(simulation, time)?;
         let boundary = &simulation.model().boundary;
         let states = simulation.block_states();
         let blocks: Vec<BlockFrame> = states
@@ -254,6 +269,7 @@ impl Film {
     /// Forgets what has been kept back.
     pub fn discard(&mut self) {
         self.forget_breaks();
+        self.flow.clear();
         self.writer.discard();
     }
 
@@ -263,6 +279,7 @@ impl Film {
     /// As [`Film::open`].
     pub fn cut(&mut self, until: f64) -> io::Result<()> {
         self.forget_breaks();
+        self.flow.clear();
         self.writer.cut(until).map_err(refused)
     }
 

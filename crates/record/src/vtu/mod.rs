@@ -15,8 +15,9 @@ use enmm::geometry::Point;
 use enmm::model::Simulation;
 use enmm_io::files::{at_path, open_result, write_atomic, write_atomic_by};
 use enmm_observe::{
-    BOLT_QUANTITIES, BoltCondition, BoltLine, BondState, ContactState, JOINT_QUANTITIES, JointPiece, Joints, Quantity,
-    STRESS_QUANTITIES, Snapshot, SupportKind, SupportPoint, WetEdge, bolts, supports, wet_edges,
+    BOLT_QUANTITIES, BoltCondition, BoltLine, BondState, ContactState, FLOW_QUANTITIES, FlowLine, JOINT_QUANTITIES,
+    JointPiece, Joints, Quantity, STRESS_QUANTITIES, Snapshot, SupportKind, SupportPoint, WaterInJoints, WetEdge,
+    bolts, supports, wet_edges,
 };
 
 use crate::folder::make_frames;
@@ -166,6 +167,22 @@ pub fn write_water_vtu(edges: &[WetEdge], time: f64, path: &Path) -> io::Result<
     lines(time, Vec::new(), &ends, vec![pressure], vec![block]).write(path)
 }
 
+/// Writes joints in which water flows: one line for each piece that conducts, on the face of its first block.
+///
+/// Point data: `pressure_head` (m). Cell data: `head` (m), `pressure` (Pa), `flow` (m²/s, along the line), `aperture`
+/// (m), `filling` (0 to 1), `block`. Field data: `TimeValue` (s).
+///
+/// # Errors
+/// Whatever the file system refuses, with the path in the message.
+pub fn write_flow_vtu(lines_of: &[FlowLine], time: f64, path: &Path) -> io::Result<()> {
+    let ends: Vec<Point> = lines_of.iter().flat_map(|line| line.ends).collect();
+    let heads: Vec<f64> = lines_of.iter().flat_map(FlowLine::pressure_heads).collect();
+    let heads = Array::numbers("pressure_head", heads.iter().copied());
+    let mut cell_data = Vec::from(numbers(&FLOW_QUANTITIES, lines_of));
+    cell_data.push(Array::integers("block", lines_of.iter().map(|line| line.block as usize)));
+    lines(time, Vec::new(), &ends, vec![heads], cell_data).write(path)
+}
+
 /// Arrays of the quantities of a table.
 fn numbers<'a, T, const N: usize>(quantities: &[Quantity<T>; N], values: &'a [T]) -> [Array<'a>; N] {
     let array = |quantity: &Quantity<T>| Array::numbers(quantity.name, values.iter().map(quantity.get));
@@ -211,6 +228,8 @@ pub struct Structures {
     pub supports: Vec<SupportPoint>,
     /// Wet edges of the boundary.
     pub water: Vec<WetEdge>,
+    /// Joints in which water flows.
+    pub flow: Vec<FlowLine>,
     /// Names of the bolts of the case.
     pub bolt_names: Vec<String>,
     /// Names of the fixities of the case.
@@ -227,6 +246,7 @@ impl Structures {
             bolts: bolts(simulation),
             supports: supports(simulation),
             water: wet_edges(simulation),
+            flow: WaterInJoints::of(simulation).map_or_else(Vec::new, |water| water.lines),
             bolt_names: case.bolts.iter().enumerate().map(|(k, bolt)| named("bolt", k, &bolt.name)).collect(),
             fix_names: case.fixes.iter().enumerate().map(|(k, fix)| named("fix", k, &fix.name)).collect(),
         }
@@ -246,10 +266,12 @@ pub enum Part {
     Supports,
     /// The wet boundary.
     Water,
+    /// Joints in which water flows.
+    Flow,
 }
 
 /// All parts.
-pub const PARTS: [Part; 5] = [Part::Elements, Part::Joints, Part::Bolts, Part::Supports, Part::Water];
+pub const PARTS: [Part; 6] = [Part::Elements, Part::Joints, Part::Bolts, Part::Supports, Part::Water, Part::Flow];
 
 impl Part {
     /// The parts that frames of a model have.
@@ -261,13 +283,14 @@ impl Part {
             (!model.bolts.is_empty(), Self::Bolts),
             (!model.supports.is_empty(), Self::Supports),
             (model.water.is_some() || model.flow.is_some(), Self::Water),
+            (model.flow.is_some(), Self::Flow),
         ];
         all.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect()
     }
 
     /// Its name, with which its files begin.
     pub fn name(self) -> &'static str {
-        ["elements", "joints", "bolts", "supports", "water"][self as usize]
+        ["elements", "joints", "bolts", "supports", "water", "flow"][self as usize]
     }
 
     /// Its file in a frame of this number, in the directory of the run.
@@ -283,6 +306,7 @@ impl Part {
             Self::Bolts => write_bolts_vtu(&beside.bolts, &beside.bolt_names, time, path),
             Self::Supports => write_supports_vtu(&beside.supports, &beside.fix_names, time, path),
             Self::Water => write_water_vtu(&beside.water, time, path),
+            Self::Flow => write_flow_vtu(&beside.flow, time, path),
         }
     }
 }

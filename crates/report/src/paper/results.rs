@@ -148,6 +148,7 @@ fn stage_figures(run: &Record) -> String {
         ("joints", "joints that lock, slip and are open"),
         ("mean_stress_contours", "mean stress"),
         ("strength", "share of strength of the worst section of each block"),
+        ("flow", "pressure head of the water in joints, and its flow"),
     ];
     let of_stage = |(k, stage): (usize, &Value)| {
         let name = text(&stage["name"]);

@@ -2,7 +2,7 @@
 
 use super::corners::CornersHold;
 use super::{FailingBlock, Reason, Reduction, Trial, Verdict};
-use crate::limit_analysis::{Bound, NearEnds};
+use crate::limit_analysis::{Bound, NearEnds, staged};
 use enmm::model::case::{Case, Rock};
 
 /// Part of the largest term of the ledger that may stay unexplained.
@@ -13,6 +13,8 @@ const ABOVE: f64 = 1.02;
 /// Weight of the rock over its height, over Young's modulus, from which blocks deform so much that the factor of rigid
 /// ones is exceeded: on the slide of a wedge by 0.2 % here, 1 % at 0.015 and 4 % at 0.06.
 const SOFT: f64 = 3e-3;
+/// Share by which the pressure of water in joints may differ between trials and limit analysis.
+const WATER_APART: f64 = 0.02;
 /// Blocks that a warning names.
 const NAMED: usize = 3;
 
@@ -113,6 +115,7 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
     doubts.extend(undecided(trials));
     doubts.extend(loose(reduction));
     doubts.extend(soft(case));
+    doubts.extend(other_water(reduction, case));
     let rubbing = case.joint_laws.values().any(|law| law.friction_deg > 0.0);
     if !rubbing && !case.joint_laws.is_empty() {
         doubts.push("no joint has friction: the factor is one on cohesion and tensile strength alone".to_owned());
@@ -124,6 +127,22 @@ pub fn doubts(reduction: &Reduction, case: &Case) -> Vec<String> {
         ));
     }
     doubts
+}
+
+/// Water in joints that presses otherwise in the trials than in limit analysis, which knows no openings.
+fn other_water(reduction: &Reduction, case: &Case) -> Option<String> {
+    let in_trials = reduction.simulation.pressure_in_joints()?;
+    let at_start = staged(case).ok()?.0.pressure_in_joints()?;
+    let apart = (in_trials - at_start).abs() / in_trials.max(at_start);
+    (apart > WATER_APART).then(|| {
+        format!(
+            "water presses on the joints with {in_trials:.4e} N/m in the trials, whose joints have opened and closed \
+             as at rest, and with {at_start:.4e} N/m in limit analysis, whose joints are as at the start: {:.1} % \
+             apart; F and its bound are of other water: compare with equal aperture_min and aperture_max in [flow], \
+             which keep apertures as they are",
+            100.0 * apart
+        )
+    })
 }
 
 /// Blocks so soft that they hold more by deforming; rock that yields is compared with bounds of its own.

@@ -1,10 +1,12 @@
 //! One way to fail after the other: the next is looked for when the blocks of the last have gone.
 
 use enmm::model::Simulation;
-use enmm::model::case::{Case, Stage, StageKind};
+use enmm::model::case::{Case, FlowTime, Stage, StageFlow, StageKind};
 
 use super::{End, FailingBlock, Progress, Reduction, ReductionError, ReductionOptions, Trial, factor_of_safety};
 
+/// Time (s) in which no water flows.
+const NO_TIME: f64 = 1e-6;
 /// Share of the free rock below which failing blocks are a chip and no failure of the slope.
 pub const CHIP: f64 = 0.015;
 
@@ -90,6 +92,8 @@ fn without(stages: &[Stage], simulation: &Simulation, failing: &[FailingBlock]) 
     Stage {
         convergence: last.convergence,
         excavate: blocks.map(|block| simulation.model().covers.point_inside(block).into()).collect(),
+        // Water that has had its time before gets none to follow.
+        flow: last.flow_time().map(|_| StageFlow::Over(FlowTime { time: NO_TIME, steps: 1 })),
         ..Stage::plain(stages, "cleared", StageKind::Static, last.duration)
     }
 }

@@ -59,6 +59,8 @@ pub fn settle(case: &Case, options: &ReductionOptions) -> Result<Rest, Reduction
             let (unbalanced, remedy) = (report.unbalanced, remedy(simulation.case()));
             return Err(ReductionError::NotAtRest { stage, time, unbalanced, remedy });
         }
+        let name = &simulation.stage().name;
+        warnings.extend(simulation.unsettled_apertures().map(|doubt| format!("stage {name:?}: {doubt}")));
         simulation.next_stage()?;
     }
     warnings.extend(slide(&simulation).map(|slip| {

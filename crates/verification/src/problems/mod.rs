@@ -47,6 +47,7 @@ mod f5;
 mod f6;
 mod f7;
 mod incline;
+mod joint_flow;
 mod limit;
 mod newmark;
 mod plane_slide;
@@ -54,6 +55,13 @@ mod shear_box;
 mod slider;
 mod strip;
 mod toppling;
+mod w1;
+mod w13;
+mod w3;
+mod w4;
+mod w5;
+mod w8;
+mod w9;
 
 pub(crate) use beam::{Beam, Plane};
 
@@ -104,4 +112,11 @@ pub const ALL: &[Problem] = &[
     f5::PROBLEM,
     f6::PROBLEM,
     f7::PROBLEM,
+    w1::PROBLEM,
+    w3::PROBLEM,
+    w4::PROBLEM,
+    w5::PROBLEM,
+    w8::PROBLEM,
+    w9::PROBLEM,
+    w13::PROBLEM,
 ];

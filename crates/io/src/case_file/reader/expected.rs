@@ -83,11 +83,14 @@ impl<'a> Schema<'a> {
         }
     }
 
-    /// Returns the alternative for a list, or that for any other value; the schema itself where there are none.
-    pub fn fitting(self, is_list: bool) -> Self {
+    /// Returns the alternative for a list (`array`), a table (`object`) or any other value (an empty word); the schema
+    /// itself where there are none.
+    pub fn fitting(self, kind: &str) -> Self {
         let alternatives = self.resolved().node.get("anyOf").and_then(Value::as_array);
         let all = alternatives.into_iter().flatten().map(|alternative| self.at(alternative));
-        all.into_iter().find(|schema| (schema.kind() == "array") == is_list).unwrap_or(self)
+        let fits =
+            |schema: &Self| ["array", "object"].iter().all(|parts| (schema.kind() == *parts) == (kind == *parts));
+        all.into_iter().find(fits).unwrap_or(self)
     }
 
     /// Returns all alternatives in words, such as `true or false, or a list of …`.

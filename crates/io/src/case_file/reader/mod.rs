@@ -65,7 +65,7 @@ impl Reader<'_> {
 
     fn value(&mut self, value: &DeValue, schema: &Schema, key: &Key) -> Result<Value, CaseError> {
         let any = schema;
-        let schema = &schema.fitting(matches!(value, DeValue::Array(_)));
+        let schema = &schema.fitting(kind(value));
         match (schema.expected(), value) {
             (Expected::Table(fields), DeValue::Table(table)) => self.table(table, &fields, key),
             (Expected::Array { items, length }, DeValue::Array(array)) => self.array(array, (&items, length), key),
@@ -156,6 +156,15 @@ impl Reader<'_> {
             return self.fail(key, format!("is {text:?}, must be one of {known}"));
         }
         self.fail(key, format!("is {text:?}, did you mean {near:?}? It must be one of {known}"))
+    }
+}
+
+/// Type of a value in the words of a schema, where it is one of parts.
+fn kind(value: &DeValue) -> &'static str {
+    match value {
+        DeValue::Array(_) => "array",
+        DeValue::Table(_) => "object",
+        _ => "",
     }
 }
 
