@@ -72,9 +72,9 @@ impl Simulation {
         let place = a + (b - a) * 0.5;
         (!agree).then(|| {
             format!(
-                "apertures and openings do not agree after {count} rounds: near ({:.6}, {:.6}) m openings ask for {:.1} \
-                 % more or less; let the stage last longer, give stiffer joints, a greater flow.aperture_min or a lesser \
-                 flow.aperture_max, or write `coupled = false` in [flow]",
+                "apertures and openings do not agree after {count} rounds: near ({:.6}, {:.6}) m openings ask for \
+                 {:.1} % more or less; let the stage last longer, give stiffer joints, a greater flow.aperture_min or \
+                 a lesser flow.aperture_max, or write `coupled = false` in [flow]",
                 place.x,
                 place.y,
                 100.0 * libm::expm1(asked)
