@@ -63,7 +63,7 @@ impl Symbolic {
     /// More entries than numbers of 32 bits can tell apart.
     pub fn of(nodes: usize, ends: &[[u32; 2]]) -> Result<Self, Refused> {
         let too_large = Refused::Size { count: nodes + ends.len() };
-        let order = minimum_degree(nodes, ends).ok_or_else(|| too_large.clone())?;
+        let order = minimum_degree(nodes, ends).ok_or(too_large)?;
         let mut places = vec![0u32; nodes];
         order.iter().enumerate().for_each(|(place, &node)| places[node as usize] = place as u32);
         let by_place = |&[a, b]: &[u32; 2]| {
