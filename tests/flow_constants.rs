@@ -11,8 +11,9 @@ fn plate(heads: [f64; 2], alone: f64, more: &str) -> String {
     format!(
         "title = \"plate\"\n[domain]\noutline = [[0, 0], [100, 0], [100, 30], [0, 30]]\n[mesh]\nsize = 3.0\n\
          origin = [0.131, 0.077]\n[[joint]]\npoints = [[0, 10], [100, 10]]\n[[joint]]\n\
-         points = [[40, 20], [{:?}, 20]]\n[rock.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n[joint_law.joint]\nfriction_deg = 40\n[[fix]]\n\
-         edge = [[0, 0], [100, 0]]\n[flow]\naperture = 1e-4\n[[head]]\nname = \"left\"\nedge = [[0, 0], [0, 30]]\n\
+         points = [[40, 20], [{:?}, 20]]\n[rock.rock]\ndensity = 2600\nyoung = 1e10\npoisson = 0.25\n\
+         [joint_law.joint]\nfriction_deg = 40\n[[fix]]\nedge = [[0, 0], [100, 0]]\n[flow]\naperture = 1e-4\n[[head]]\n\
+         name = \"left\"\nedge = [[0, 0], [0, 30]]\n\
          level = {left:e}\n[[head]]\nname = \"right\"\nedge = [[100, 0], [100, 30]]\nlevel = {right:e}\n{more}\
          [[stage]]\nname = \"rest\"\nkind = \"static\"\nduration = 1.0\n",
         40.0 + alone

@@ -289,6 +289,17 @@ fn a_flow_that_is_held_refuses_inputs_after_the_start() {
 }
 
 #[test]
+fn heads_that_a_host_moves_may_begin_equal() {
+    let warnings = |course| {
+        let text = dam(1.3, course).replace("level = 4.0", "level = 9.0");
+        simulation(&text).built().warnings.clone()
+    };
+    let told = warnings("");
+    assert!(told.len() == 1 && told[0].contains("all heads are equal"), "{told:?}");
+    assert_eq!(warnings(FOLLOWS), Vec::<String>::new());
+}
+
+#[test]
 fn inputs_that_cannot_be_are_refused_by_name() {
     let mut model = host(FOLLOWS);
     for (refused, wanted) in [

@@ -148,8 +148,8 @@ fn a_net_is_drawn_down_as_a_porous_layer() {
     let (conductivity, porosity) = (T / spacing, 2.0 * 1e-4 / spacing);
     let time = 0.25 * 1600.0 / (conductivity * 8.0 / porosity);
     let text = format!(
-        "title = \"net\"\n[domain]\noutline = [[0, 0.25], [40, 0.25], [40, 11], [0, 11]]\n[mesh]\nsize = 100.0\nleast_block = 0\n\
-         origin = [-30.0, -5.0]\n{joints}{ROCK}[joint_law.joint]\nfriction_deg = 40\n[[fix]]\n\
+        "title = \"net\"\n[domain]\noutline = [[0, 0.25], [40, 0.25], [40, 11], [0, 11]]\n[mesh]\nsize = 100.0\n\
+         least_block = 0\norigin = [-30.0, -5.0]\n{joints}{ROCK}[joint_law.joint]\nfriction_deg = 40\n[[fix]]\n\
          edge = [[0, 0.25], [40, 0.25]]\n[[fix]]\nedge = [[0, 0.25], [0, 11]]\n[flow]\naperture = 1e-4\n[[head]]\n\
          name = \"side\"\nedge = [[40, 0.25], [40, 11]]\nlevel = 10.02\n{REST}{}{}",
         over("open", 1e-3, 1, "heads = { side = 6.02 }\n"),

@@ -46,7 +46,7 @@ impl Simulation {
         let (stage, start) = (state.stage as usize, self.time());
         let seen = Seen { model, state, net, stage, start, way: None };
         match seen.round(seepage).map_err(|failure| seen.failed(failure))? {
-            Outcome::Goes(found) => (self.state.seepage, self.state.most_rest) = (Some(found), None),
+            Outcome::Goes(found) => (self.state.seepage, self.state.most_rest) = (Some(*found), None),
             Outcome::Over(rounds) => {
                 let seepage = self.state.seepage.iter_mut();
                 seepage.for_each(|seepage| {
@@ -72,9 +72,9 @@ impl Simulation {
         let place = a + (b - a) * 0.5;
         (!agree).then(|| {
             format!(
-                "apertures and openings do not agree after {count} rounds: near ({:.6}, {:.6}) m openings ask for {:.1} \
-                 % more or less; let the stage last longer, give stiffer joints, a greater flow.aperture_min or a lesser \
-                 flow.aperture_max, or write `coupled = false` in [flow]",
+                "apertures and openings do not agree after {count} rounds: near ({:.6}, {:.6}) m openings ask for \
+                 {:.1} % more or less; let the stage last longer, give stiffer joints, a greater flow.aperture_min or \
+                 a lesser flow.aperture_max, or write `coupled = false` in [flow]",
                 place.x,
                 place.y,
                 100.0 * libm::expm1(asked)
@@ -88,7 +88,7 @@ enum Outcome {
     /// Apertures stay as they are.
     Over(Rounds),
     /// The flow with other apertures.
-    Goes(Seepage),
+    Goes(Box<Seepage>),
 }
 
 impl Seen<'_> {
@@ -124,7 +124,7 @@ impl Seen<'_> {
         found.rounds = past;
         let rounds = Rounds { count: count + 1, asked: most, piece, is_over: false, agree };
         found.balances.last_mut().into_iter().for_each(|balance| balance.rounds = Some(rounds));
-        Ok(Outcome::Goes(found))
+        Ok(Outcome::Goes(Box::new(found)))
     }
 
     /// Apertures (m) that openings ask for now of pieces that conduct.

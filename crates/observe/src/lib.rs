@@ -1,4 +1,4 @@
-//! What a model shows at one instant: elements, blocks, joints, bolts, supports, water and sums over the model.
+//! A model as it is seen at one instant: elements, blocks, joints, bolts, supports, water and sums over the model.
 //!
 //! Pictures, frames, the film and the summary read a model through these types, so that a joint opens by the same
 //! number everywhere. Each kind with numbers has one table of [`Quantity`]: name, unit, meaning and value.
@@ -19,8 +19,8 @@
 //! | monitors | [`MonitorState`] | [`MONITOR_QUANTITIES`] |
 //! | heads, rain and drains | [`InletState`] | [`INLET_QUANTITIES`] |
 //!
-//! Blocks, energies, ports, monitors, heads and sums for hosts are worked out by the engine, because the C library and the
-//! FMUs read them between two steps.
+//! Blocks, energies, ports, monitors, heads and sums for hosts are worked out by the engine, because the C library and
+//! the FMUs read them between two steps.
 #![forbid(unsafe_code)]
 
 mod bolts;

@@ -135,13 +135,15 @@ pub(super) fn warnings(case: &Case, model: &Model) -> Vec<String> {
     };
     let rains = |(condition, _): &At| matches!(condition, Condition::Rain { rate } if *rate > 0.0);
     let mut warnings = Vec::new();
-    if stages.iter().flatten().all(|at| held(at).is_none() && !rains(at)) {
+    // Hosts move what a stage follows.
+    let is_held = case.stages.iter().all(|stage| stage.flow_steps().is_none());
+    if is_held && stages.iter().flatten().all(|at| held(at).is_none() && !rains(at)) {
         warnings.push(
             "flow: no water enters, so that all joints are dry: no [[head]] is above the joints that it meets, none \
              crops out below [water], and no [[rain]] falls"
                 .to_owned(),
         );
-    } else if !digs(case) && stages.iter().all(|stage| is_still(net, stage)) {
+    } else if is_held && !digs(case) && stages.iter().all(|stage| is_still(net, stage)) {
         warnings.push(
             "flow: all heads are equal and no water flows; still water, [water] without [flow], gives the same \
              pressures"

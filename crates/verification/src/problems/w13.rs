@@ -7,8 +7,8 @@ pub const PROBLEM: Problem = Problem {
     id: "W13",
     title: "A pump, and a well that runs dry",
     source: "a pump at x takes Q from a joint between two equal heads H: the head there is H − Q/(T/x + T/(L − x)), \
-             and no lower than the joint, where the pump gets T·H/x + T·H/(L − x); catches negative pressures and pumps \
-             that take what is not there",
+             and no lower than the joint, where the pump gets T·H/x + T·H/(L − x); catches negative pressures and \
+             pumps that take what is not there",
     parameters: &[
         Parameter::new("length", "m", 20.0, [1.0, 200.0], "length L of the joint"),
         Parameter::new("head", "m", 10.0, [0.1, 100.0], "head H at both ends over the joint"),

@@ -157,8 +157,8 @@ pub extern "C" fn enmm_set_port_displacement(model: *mut enmm_model, port: u32, 
 /// enmm_find_name finds it by name.
 ///
 /// Acts where the flow in joints is found: at the start of static stages, and in dynamic stages with `flow = "steady"`
-/// or `flow = "transient"` on the grid of internal steps; else at the same times as enmm_set_gravity. A stage that names
-/// the head ends it.
+/// or `flow = "transient"` on the grid of internal steps; else at the same times as enmm_set_gravity. A stage that
+/// names the head ends it.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a head that does not exist, a value that is not finite or beyond 1e9 m, or a
 /// model whose flow is held from now on.
