@@ -55,9 +55,7 @@ impl Simulation {
         let steps = stage.flow_steps().filter(|_| stage.is_transient());
         let span = steps.map(|every| every as f64 * model.dt * self.case.pace());
         let found = seen.again(seepage, stage.flow_steps().is_some(), span).map_err(|failure| seen.failed(failure))?;
-        if found.is_some() {
-            self.state.seepage = found;
-        }
+        found.into_iter().for_each(|found| self.state.seepage = Some(found));
         Ok(())
     }
 

@@ -43,8 +43,8 @@ impl Simulation {
 struct Course {
     apertures: Vec<[f64; 2]>,
     conductance: Vec<f64>,
-    volume: Vec<f64>,
-    compliance: Vec<f64>,
+    /// Volume (m²) and compliance (m² per m of head) of each piece.
+    room: (Vec<f64>, Vec<f64>),
     unknowns: Vec<f64>,
     flooded: Vec<bool>,
     /// Water (m²) in the joints now.
@@ -65,13 +65,11 @@ impl Course {
         unknowns: &[f64],
         so_far: Option<&StageWater>,
     ) -> Result<Self, Failure> {
-        let (conductance, (volume, compliance)) = (seen.conductance(&apertures), seen.room(&apertures));
         let none = || StageWater { time: 0.0, sums: vec![[0.0; 3]; seen.net.inlet_count()], stored: 0.0, drains: 0.0 };
         let mut course = Self {
+            conductance: seen.conductance(&apertures),
+            room: seen.room(&apertures),
             apertures,
-            conductance,
-            volume,
-            compliance,
             unknowns: unknowns.to_vec(),
             flooded: Vec::new(),
             holds: 0.0,
@@ -85,7 +83,7 @@ impl Course {
     }
 
     fn storage(&self) -> Storage<'_> {
-        Storage { volume: &self.volume, compliance: &self.compliance }
+        Storage { volume: &self.room.0, compliance: &self.room.1 }
     }
 
     fn held(&self, seen: &Seen) -> Result<f64, Failure> {
@@ -150,8 +148,7 @@ impl<'a> Seen<'a> {
         let pieces = self.net.pieces.iter().zip(&before.apertures);
         let apertures = pieces.map(|(piece, own)| if self.is_there(piece) { *own } else { [0.0; 2] }).collect();
         let last = before.balances.last().filter(|balance| balance.stage as usize == self.stage);
-        let so_far = last.and_then(|balance| balance.water.as_ref());
-        let mut course = Course::begin(self, apertures, &before.unknowns, so_far)?;
+        let mut course = Course::begin(self, apertures, &before.unknowns, last.and_then(|own| own.water.as_ref()))?;
         let start = course.holds;
         course.go(self, step)?;
         let taken = course.holds - start;

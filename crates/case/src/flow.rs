@@ -78,7 +78,7 @@ keys! {
         /// both agree. If not, the apertures of a stage are those of its start.
         pub coupled: bool = false,
         /// Water (m³ for each m² of joint, hence m) that the rock beside joints gives as they drain and takes as they
-        /// fill, for stages with a time of flow: its porosity times half the spacing of joints. The joints themselves
+        /// fill, in flow that takes time: its porosity times half the spacing of joints. The joints themselves
         /// hold their aperture; default: 0.
         pub storage: f64 = 0.0 =>
             Range::from(0.0).to(10.0).of(METRE).hint("the porosity of the rock times half the spacing of its joints")
