@@ -906,6 +906,10 @@ typedef struct enmm_totals {
    * Height of the highest outcrop from which water seeps, of the lowest joint where none does (m).
    */
   double seepage_height;
+  /**
+   * Water that joints have taken in dynamic stages, m3 per metre (m2).
+   */
+  double water_stored;
 } enmm_totals;
 
 /**
@@ -1522,7 +1526,8 @@ enmm_status enmm_set_port_displacement(struct enmm_model *model, uint32_t port, 
  * enmm_find_name finds it by name.
  *
  * Acts where the flow in joints is found: at the start of static stages, and in dynamic stages with `flow = "steady"`
- * on the grid of internal steps; else at the same times as enmm_set_gravity. A stage that names the head ends it.
+ * or `flow = "transient"` on the grid of internal steps; else at the same times as enmm_set_gravity. A stage that
+ * names the head ends it.
  *
  * Errors: ENMM_INVALID_ARGUMENT for a head that does not exist, a value that is not finite or beyond 1e9 m, or a
  * model whose flow is held from now on.

@@ -299,6 +299,7 @@ class Totals(ctypes.Structure):
         ("water_left", c_double),
         ("flow_residual", c_double),
         ("seepage_height", c_double),
+        ("water_stored", c_double),
     ]
 
 
