@@ -54,7 +54,8 @@ fn a_run_tells_the_water_of_a_time_and_the_rounds_of_openings() {
     (flow.coupled, flow.storage) = (true, 1e-2);
     case.stages[0].convergence = Some(1e-4);
     // An even plane, which does not slide.
-    for law in ["plane", "toe"].into_iter().filter_map(|name| case.joint_laws.get_mut(name)) {
+    for name in ["plane", "toe"] {
+        let law = case.joint_laws.get_mut(name).expect("a law of the example");
         (law.aperture, law.cohesion) = (None, 200e3);
     }
     let mut later = case.stages[0].clone();
