@@ -11,6 +11,7 @@ mod model_page;
 pub mod rock_mass;
 mod run;
 mod stereonet;
+mod sweep;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};
 pub use check::{check, count_of_notes};
@@ -29,3 +30,4 @@ pub use mechanism_page::{write_bound_page, write_bracket_page};
 pub use model_page::write_model_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};
 pub use stereonet::{NetOptions, apparent, stereonet};
+pub use sweep::{Change, Crossing, Effect, Sweep, SweepKind, SweepResult, sweep};

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use enmm::engine_version;
 use enmm::model::case::EnsembleOutput;
-use enmm_ensemble::{Given, Identity, Row, Samples, Store, sample_key, work};
+use enmm_ensemble::{Given, Identity, Row, Store, Value, sample_key, work};
 use enmm_io::LoadedCase;
 
 use super::{Answer, EnsembleError, EnsembleOptions, SearchOptions, columns};
@@ -44,29 +44,30 @@ pub struct EnsembleProgress {
     pub slowest: Option<(usize, f64)>,
 }
 
+/// The values of a sample with their keys.
+pub type Values = Vec<(String, Value)>;
+
 type Worker<'a> = &'a (dyn Fn(&Ask) -> Result<Answer, String> + Sync);
 
 /// The store of an ensemble and its workers.
 pub struct Answers<'a> {
     loaded: &'a LoadedCase,
     options: &'a EnsembleOptions<'a>,
-    keys: Vec<String>,
-    rows: Vec<Vec<enmm_ensemble::Value>>,
-    settings: Vec<Vec<String>>,
+    values: Vec<Values>,
     store: Store,
     ask: Worker<'a>,
     hear: &'a mut dyn FnMut(&EnsembleProgress),
 }
 
 impl<'a> Answers<'a> {
-    /// Opens the store of the samples of a case.
+    /// Opens the store of the samples of a case, of which each has its own values.
     ///
     /// # Errors
     /// The store cannot be made or opened.
     pub fn open(
         loaded: &'a LoadedCase,
         options: &'a EnsembleOptions<'a>,
-        samples: &Samples,
+        values: Vec<Values>,
         ask: Worker<'a>,
         hear: &'a mut dyn FnMut(&EnsembleProgress),
     ) -> Result<Self, EnsembleError> {
@@ -74,14 +75,12 @@ impl<'a> Answers<'a> {
             std::fs::create_dir_all(parent).map_err(EnsembleError::Output)?;
         }
         let store = Store::open(&options.store)?;
-        let (keys, rows) = (samples.keys.clone(), samples.rows.clone());
-        let settings = (0..rows.len()).map(|k| samples.settings(k)).collect();
-        Ok(Self { loaded, options, keys, rows, settings, store, ask, hear })
+        Ok(Self { loaded, options, values, store, ask, hear })
     }
 
     /// Number of samples.
     pub fn count(&self) -> usize {
-        self.rows.len()
+        self.values.len()
     }
 
     /// One output of some samples, in their order.
@@ -104,15 +103,15 @@ impl<'a> Answers<'a> {
         let timed = |i: usize| {
             let clock = Instant::now();
             let k = samples[i];
-            let ask = Ask { sample: k, settings: self.settings[k].clone(), output, search: *search };
+            let settings = self.values[k].iter().map(|(key, value)| format!("{key}={value}")).collect();
+            let ask = Ask { sample: k, settings, output, search: *search };
             (self.ask)(&ask).map(|answer| (answer, clock.elapsed().as_secs_f64()))
         };
         let (store, hear, limit) = (&self.store, &mut self.hear, self.loaded.case.ensemble.limit);
         let lost = work(&wanted, self.options.jobs, self.options.interrupt, timed, |i, (answer, seconds)| {
             let Answer::Done(row) = answer else { return Err(EnsembleError::Changed) };
             let k = samples[i];
-            let values: Vec<_> = self.keys.iter().map(String::as_str).zip(self.rows[k].iter().copied()).collect();
-            store.add(&keys[i], k, &values, &row, (seconds, engine_version()))?;
+            store.add(&keys[i], k, &self.values[k], &row, (seconds, engine_version()))?;
             progress.note(&row, limit, Some((k, seconds)));
             found[i] = Some(row);
             hear(&progress);
@@ -136,7 +135,7 @@ impl<'a> Answers<'a> {
             output: output.name().to_owned(),
             options: search.given().into_iter().map(|(name, value)| (name, Given::Number(value))).collect(),
         };
-        samples.iter().map(|&k| sample_key(&identity, &self.keys, &self.rows[k])).collect()
+        samples.iter().map(|&k| sample_key(&identity, &self.values[k])).collect()
     }
 
     /// Counts what the store has; rows that are to be worked out again do not count.
