@@ -117,13 +117,17 @@ fn table(found: &SweepResult, options: &EnsembleOptions) -> String {
     let of = &found.sweep;
     let mut lines = Vec::new();
     let mut tell = |name: &str, text: String| lines.push(format!("{name:<23} {text}"));
-    let keys = of.changes.iter().map(|change| format!("{} values of {}", change.values.len(), change.key));
+    let keys = of.changes.iter().map(|change| match change.values.len() {
+        1 => format!("1 value of {}", change.key),
+        n => format!("{n} values of {}", change.key),
+    });
     tell(of.kind.name(), keys.collect::<Vec<_>>().join(", "));
     let [low, high] = found.range();
     tell("factors", format!("{low:.4} to {high:.4} ({})", of.output.name().replace('_', " ")));
     match of.kind {
         SweepKind::Curve if found.rows.len() <= PRINTED => {
-            (0..found.rows.len()).for_each(|k| tell(&format!("  {}", found.samples[k][0].1), factor(found, k)));
+            (0..found.rows.len())
+                .for_each(|k| tell(&format!("  {}", digits(found.samples[k][0].1.number())), factor(found, k)));
         }
         SweepKind::Tornado => {
             tell("  the case", factor(found, 0));
@@ -163,7 +167,7 @@ fn effect(effect: &Effect) -> String {
 /// Where the factor passes the limit.
 fn crosses(found: &SweepResult, crossing: &Crossing) -> String {
     let key = |k: usize| &found.sweep.changes[k].key;
-    let [low, high] = crossing.between;
+    let [low, high] = crossing.between.map(digits);
     let place = match crossing.value {
         Some(value) => format!("at {} = {}", key(0), digits(value)),
         None => format!("at {} between {low} and {high}, where a factor is a limit or has no answer", key(0)),

@@ -17,6 +17,8 @@ const TICK_DISTANCE: [f64; 2] = [100.0, 60.0];
 const NAMES: f64 = 480.0;
 /// Room (px) for a bar, and how much of it the bar takes.
 const BAR: [f64; 2] = [56.0, 30.0];
+/// Least length (px) of a bar that can be seen.
+const SEEN: f64 = 1.0;
 /// Radius (px) of the mark of a sample.
 const MARK: f64 = 4.5;
 
@@ -296,26 +298,35 @@ fn draw_bars(sheet: &mut Sheet, bars: &Bars, frame: &Frame) {
     for (value, label) in frame.across.ticks(area.width, TICK_DISTANCE[0]) {
         draw_upright(sheet, &area, frame.pixel([value, 0.0])[0], &label, 4.0);
     }
-    let x = |factor: f64| frame.pixel([factor, 0.0])[0];
-    let limit = x(bars.limit);
+    let across = |factor: f64| frame.pixel([factor, 0.0])[0];
+    let limit = across(bars.limit);
     sheet.line([limit, area.top], [limit, area.bottom()], Style::line(ACCENT, 2.5));
     for (k, (name, ends)) in bars.bars.iter().enumerate() {
         let middle = area.top + 10.0 + BAR[0] * (k as f64 + 0.5);
         let style = TextStyle::new(TICK_SIZE).anchor(Anchor::End);
         sheet.text([area.left - 12.0, middle + 6.0], &fitted(name, TICK_SIZE, NAMES - 40.0), style);
         let Some(from) = bars.base.or(ends.first().map(|(_, factor)| *factor)) else { continue };
+        let [least, most] = [f64::min, f64::max].map(|pick| ends.iter().map(|(_, to)| *to).fold(from, pick));
+        if across(most) - across(least) < SEEN {
+            let style = TextStyle::new(TICK_SIZE).colour(GREY).halo();
+            sheet.text([across(from) + 6.0, middle + 6.0], "no change", style);
+            continue;
+        }
         for (value, to) in ends {
-            let (left, right) = (x(from.min(*to)), x(from.max(*to)));
+            let (left, right) = (across(from.min(*to)), across(from.max(*to)));
             let bar = Rect { left, top: middle - 0.5 * BAR[1], width: right - left, height: BAR[1] };
             let colour = if *to < from { SLIP } else { LOCK };
             sheet.rect(&bar, Style::fill(colour).opacity(0.55));
-            sheet.line([x(*to), bar.top], [x(*to), bar.bottom()], Style::line(colour, 2.4));
+            sheet.line([across(*to), bar.top], [across(*to), bar.bottom()], Style::line(colour, 2.4));
+            if *to > least && *to < most {
+                continue;
+            }
             let (side, anchor) = if *to < from { (-6.0, Anchor::End) } else { (6.0, Anchor::Start) };
             let style = TextStyle::new(TICK_SIZE).anchor(anchor).halo();
-            sheet.text([x(*to) + side, middle + 6.0], value, style);
+            sheet.text([across(*to) + side, middle + 6.0], value, style);
         }
     }
-    if let Some(base) = bars.base.map(x) {
+    if let Some(base) = bars.base.map(across) {
         sheet.line([base, area.top], [base, area.bottom()], Style::line(INK, 2.0));
     }
 }

@@ -1,5 +1,6 @@
 //! The picture of a sweep.
 
+use enmm_ensemble::Value;
 use enmm_picture::{Bars, Curve, Grid, Picture, bars_picture, curve_picture, grid_picture, number_text, three_digits};
 
 use super::{Effect, SweepKind, SweepResult};
@@ -18,7 +19,12 @@ impl SweepResult {
     fn caption(&self) -> String {
         let [low, high] = self.range().map(three_digits);
         let name = output_name(self.sweep.output);
-        format!("{name}: {low} to {high} in {} samples", self.rows.len() - self.failed.len())
+        let of_case = match (self.sweep.kind, self.factor(0)) {
+            (SweepKind::Tornado, Some(factor)) => format!(", {} of the case", three_digits(factor)),
+            _ => String::new(),
+        };
+        let n = self.rows.len() - self.failed.len();
+        format!("{name}: {low} to {high} in {n} samples{of_case}; red line: F = {}", three_digits(self.limit))
     }
 
     fn curve(&self, title: &str) -> Curve {
@@ -49,8 +55,7 @@ impl SweepResult {
 
     fn bars(&self, title: &str) -> Bars {
         let ends = |effect: &Effect| {
-            let text = |number: f64| number_text(number);
-            let end = |(value, factor): &(enmm_ensemble::Value, f64)| (text(value.number()), *factor);
+            let end = |(value, factor): &(Value, f64)| (number_text(value.number()), *factor);
             (effect.key.clone(), effect.factors.iter().map(end).collect())
         };
         Bars {
