@@ -4,10 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use enmm::model::case::EnsembleOutput;
 use enmm_ensemble::{Interval, Row, beta, medians};
 use enmm_io::LoadedCase;
-use enmm_run::{EnsembleOptions, EnsembleResult, answer, columns, ensemble};
+use enmm_run::{EnsembleOptions, EnsembleResult, SampleOutput, answer, columns, ensemble};
 use enmm_stability::strength_reduction::{Progress, Trial};
 use serde_json::{Map, Value as Json, json};
 
@@ -40,8 +39,8 @@ pub struct Arguments {
     #[arg(long, hide = true, value_name = "KEY=VALUE")]
     value: Vec<String>,
     /// Output to work out of it; default: that of the case.
-    #[arg(long, hide = true, value_name = "OUTPUT", value_parser = output)]
-    output_of: Option<EnsembleOutput>,
+    #[arg(long, hide = true, value_name = "OUTPUT", value_parser = SampleOutput::of_name)]
+    output_of: Option<SampleOutput>,
 }
 
 /// Works out an ensemble.
@@ -77,18 +76,13 @@ fn load(arguments: &Arguments) -> Result<LoadedCase, enmm_io::CaseError> {
     Ok(loaded)
 }
 
-/// The output of a sample by its name in a case.
-fn output(name: &str) -> Result<EnsembleOutput, String> {
-    serde_json::from_value(json!(name)).map_err(|error| error.to_string())
-}
-
 /// Works out one sample in this process and prints its trials and its answer, a line each.
 fn work_out(arguments: &Arguments, loaded: &LoadedCase, hash: &str) -> ExitCode {
     if loaded.hash != hash {
         print_line(&json!({ "changed": loaded.hash }).to_string());
         return ExitCode::SUCCESS;
     }
-    let wanted = arguments.output_of.unwrap_or(loaded.case.ensemble.output);
+    let wanted = arguments.output_of.unwrap_or(loaded.case.ensemble.output.into());
     let mut hear = |trial: &Trial, progress: Progress| print_line(&trial_line(trial, progress));
     let row = match arguments.case.load_with(&arguments.value) {
         Ok(sample) => answer(&sample, wanted, &arguments.work.search(), &mut hear),

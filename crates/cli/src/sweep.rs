@@ -1,4 +1,4 @@
-//! `enmm sweep`: the factor of safety of a case over values of its keys, as a curve, a contour or a tornado.
+//! `enmm sweep`: the factor of safety of a case, or its displacement, over values of keys, as a curve, a contour or a tornado.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 use enmm::model::case::EnsembleOutput;
 use enmm_io::{CaseError, LoadedCase};
 use enmm_run::{
-    Change, Crossing, Effect, EnsembleOptions, SearchOptions, Sweep, SweepKind, SweepResult, sweep as find,
+    Change, Crossing, Effect, EnsembleOptions, SampleOutput, SearchOptions, Sweep, SweepKind, SweepResult,
+    sweep as find,
 };
 
 use crate::case::CaseArguments;
@@ -38,7 +39,7 @@ pub struct Arguments {
     /// Change each key alone, the others as they are in the case: a tornado of any number of keys.
     #[arg(long)]
     one_by_one: bool,
-    /// Command whose factor each sample gets.
+    /// Command whose result each sample gets: a factor of safety, or a displacement of `run`.
     #[arg(long, value_name = "COMMAND", default_value = "bound")]
     of: Of,
     /// Directory for the results; default: NAME/sweep, where NAME is that of the case file.
@@ -51,20 +52,23 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Commands that find a factor.
+/// Commands of which a sample has a result.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Of {
     /// Limit analysis, in a fraction of a second a sample: the bound where level tops pass.
     Bound,
     /// Strength reduction, in seconds or minutes a sample.
     Fos,
+    /// All stages, in seconds or minutes a sample: largest displacement in the last one, and whether the slope failed.
+    Run,
 }
 
 impl Of {
-    fn output(self) -> EnsembleOutput {
+    fn output(self) -> SampleOutput {
         match self {
-            Self::Bound => EnsembleOutput::LevelTops,
-            Self::Fos => EnsembleOutput::FactorOfSafety,
+            Self::Bound => EnsembleOutput::LevelTops.into(),
+            Self::Fos => EnsembleOutput::FactorOfSafety.into(),
+            Self::Run => SampleOutput::Displacement,
         }
     }
 }
@@ -90,7 +94,7 @@ fn asked(arguments: &Arguments) -> Result<Sweep, String> {
     let changes = arguments.changes.iter().map(|text| Change::parse(text)).collect::<Result<Vec<_>, _>>()?;
     if arguments.of != Of::Fos && arguments.work.search() != SearchOptions::default() {
         let given = arguments.work.search().given().into_keys().next().unwrap_or_default().replace('_', "-");
-        return Err(format!("--{given}: is an option of searches, and a bound has none; add --of fos"));
+        return Err(format!("--{given}: is an option of searches, which --of fos makes; add it"));
     }
     Sweep::new(changes, arguments.one_by_one, arguments.of.output())
 }
@@ -123,24 +127,25 @@ fn table(found: &SweepResult, options: &EnsembleOptions) -> String {
     });
     tell(of.kind.name(), keys.collect::<Vec<_>>().join(", "));
     let [low, high] = found.range();
-    tell("factors", format!("{low:.4} to {high:.4} ({})", of.output.name().replace('_', " ")));
+    tell(&of.output.name().replace('_', " "), format!("{} to {}", number(found, low), number(found, high)));
     match of.kind {
         SweepKind::Curve if found.rows.len() <= PRINTED => {
             (0..found.rows.len())
-                .for_each(|k| tell(&format!("  {}", digits(found.samples[k][0].1.number())), factor(found, k)));
+                .for_each(|k| tell(&format!("  {}", digits(found.samples[k][0].1.number())), output(found, k)));
         }
         SweepKind::Tornado => {
-            tell("  the case", factor(found, 0));
-            found.effects().iter().for_each(|of| tell(&format!("  {:.4}", of.range), effect(of)));
+            tell("  the case", output(found, 0));
+            found.effects().iter().for_each(|of| tell(&format!("  {}", number(found, of.range)), effect(found, of)));
         }
         _ => {}
     }
     let crossings = found.crossings();
+    let limit = if found.has_factors() { format!("F = {}", found.limit) } else { "failure".to_owned() };
     for crossing in crossings.iter().take(CROSSINGS) {
-        tell(&format!("F = {}", found.limit), crosses(found, crossing));
+        tell(&limit, crosses(found, crossing));
     }
     match crossings.len() {
-        0 => tell(&format!("F = {}", found.limit), no_crossing(found)),
+        0 => tell(&limit, no_crossing(found)),
         n if n > CROSSINGS => tell("", format!("and {} more: see sweep.json", n - CROSSINGS)),
         _ => {}
     }
@@ -149,19 +154,24 @@ fn table(found: &SweepResult, options: &EnsembleOptions) -> String {
     lines.join("\n")
 }
 
-/// Factor of a sample, with the way in which it is a limit alone.
-fn factor(found: &SweepResult, k: usize) -> String {
-    match (found.factor(k), found.status(k)) {
+/// A factor, or a displacement.
+fn number(found: &SweepResult, output: f64) -> String {
+    if found.has_factors() { format!("{output:.4}") } else { format!("{output:.3e} m") }
+}
+
+/// Output of a sample, with the way in which it is a limit alone, or how its run ended.
+fn output(found: &SweepResult, k: usize) -> String {
+    match (found.output(k), found.status(k)) {
         (None, _) => "no answer".to_owned(),
-        (Some(factor), "found") => format!("{factor:.4}"),
-        (Some(factor), status) => format!("{factor:.4} ({})", status.replace('_', " ")),
+        (Some(factor), "found") => number(found, factor),
+        (Some(output), status) => format!("{} ({})", number(found, output), status.replace('_', " ")),
     }
 }
 
-/// Factors of the values of a key.
-fn effect(effect: &Effect) -> String {
-    let factors = effect.factors.iter().map(|(value, factor)| format!("{factor:.4} at {value}"));
-    format!("by {}: {}", effect.key, factors.collect::<Vec<_>>().join(", "))
+/// Outputs of the values of a key.
+fn effect(found: &SweepResult, effect: &Effect) -> String {
+    let outputs = effect.outputs.iter().map(|(value, output)| format!("{} at {value}", number(found, *output)));
+    format!("by {}: {}", effect.key, outputs.collect::<Vec<_>>().join(", "))
 }
 
 /// Where the factor passes the limit.
@@ -170,7 +180,10 @@ fn crosses(found: &SweepResult, crossing: &Crossing) -> String {
     let [low, high] = crossing.between.map(digits);
     let place = match crossing.value {
         Some(value) => format!("at {} = {}", key(0), digits(value)),
-        None => format!("at {} between {low} and {high}, where a factor is a limit or has no answer", key(0)),
+        None if found.has_factors() => {
+            format!("at {} between {low} and {high}, where a factor is a limit or has no answer", key(0))
+        }
+        None => format!("begins at {} between {low} and {high}", key(0)),
     };
     match crossing.at {
         Some(at) => format!("{place}, {} = {at}", key(1)),
@@ -187,7 +200,11 @@ fn digits(value: f64) -> String {
 /// Why there is no crossing.
 fn no_crossing(found: &SweepResult) -> String {
     let [low, high] = found.range();
+    let fails = || (0..found.rows.len()).filter_map(|k| found.fails(k));
     match found.sweep.kind {
+        _ if !found.has_factors() && fails().all(|fails| fails) => "at all values".to_owned(),
+        _ if !found.has_factors() && !fails().any(|fails| fails) => "at no value".to_owned(),
+        _ if !found.has_factors() => "at some values".to_owned(),
         _ if low >= found.limit => "is not crossed: no factor is below it".to_owned(),
         _ if high < found.limit => "is not crossed: all factors are below it".to_owned(),
         SweepKind::Contour => format!("is not crossed along {}", found.sweep.changes[0].key),

@@ -7,10 +7,9 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 
 use clap::Args;
-use enmm::model::case::EnsembleOutput;
 use enmm_ensemble::Row;
 use enmm_io::LoadedCase;
-use enmm_run::{Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, SearchOptions, columns};
+use enmm_run::{Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, SampleOutput, SearchOptions, columns};
 use serde_json::Value as Json;
 
 use crate::case::CaseArguments;
@@ -184,7 +183,7 @@ fn listen(mut child: Child, mut hear: impl FnMut(&str)) -> std::io::Result<(Exit
     Ok((status, answer.filter(|_| status.success()), reader.join().unwrap_or_default()))
 }
 
-fn read(found: &Json, wanted: EnsembleOutput) -> Answer {
+fn read(found: &Json, wanted: SampleOutput) -> Answer {
     if found["changed"].is_string() {
         return Answer::Changed;
     }

@@ -123,7 +123,7 @@ fn changes_one_by_one_make_a_tornado_with_the_greatest_effect_first() {
     let answer = sweep(&place, &words);
     assert_eq!(answer.status, Some(0), "{answer:?}");
     let found = json(&place.path("out/sweep.json"));
-    assert!((number(&found["factor_of_the_case"]) / 1.2 - 1.0).abs() < 3e-4, "{found}");
+    assert!((number(&found["of_the_case"]) / 1.2 - 1.0).abs() < 3e-4, "{found}");
     let effects = found["effects"].as_array().expect("a list");
     let keys: Vec<&Value> = effects.iter().map(|effect| &effect["key"]).collect();
     assert_eq!(keys, [FRICTION, COHESION, "rock.rock.density"]);
@@ -136,6 +136,22 @@ fn changes_one_by_one_make_a_tornado_with_the_greatest_effect_first() {
     assert_eq!(lines.len(), 7);
     assert!(lines[1].starts_with("0,,,,1.") && lines[2].starts_with("1,2000,,,1."), "{lines:?}");
     answer.assert_printed(&["tornado", "1 value of rock.rock.density", "the case"]);
+}
+
+/// The block slides where tan φ is less than 0.5.
+#[test]
+fn runs_tell_between_which_values_the_slope_begins_to_fail() {
+    let place = place();
+    let answer = sweep(&place, &[&format!("{FRICTION}=20,24,29,33"), "--of", "run", "-o", "out"]);
+    assert_eq!(answer.status, Some(0), "{answer:?}");
+    let found = json(&place.path("out/sweep.json"));
+    let samples = found["samples"].as_array().expect("a list");
+    let statuses: Vec<&Value> = samples.iter().map(|sample| &sample["status"]).collect();
+    assert_eq!(statuses, ["fails", "fails", "stands", "stands"]);
+    assert!(number(&samples[0]["displacement"]) > 50.0 * number(&samples[3]["displacement"]), "{found}");
+    assert_eq!(found["crossings"], serde_json::json!([{ "value": null, "between": [24.0, 29.0] }]));
+    answer.assert_printed(&[&format!("failure                 begins at {FRICTION} between 24 and 29")]);
+    assert_eq!(place.names(), ["case.toml", "out"], "runs leave no folders");
 }
 
 #[test]

@@ -33,8 +33,8 @@ pub struct Curve {
     pub axes: [String; 2],
     /// Value and factor of each sample, in ascending order.
     pub points: Vec<[f64; 2]>,
-    /// Factor at which a line is drawn.
-    pub limit: f64,
+    /// Factor at which a line is drawn, if any.
+    pub limit: Option<f64>,
     /// Values at which the curve crosses that line.
     pub crossings: Vec<f64>,
 }
@@ -54,8 +54,8 @@ pub struct Grid {
     pub values: [Vec<f64>; 2],
     /// Factors, those of the first key beside each other; not a number where there is none.
     pub outputs: Vec<f64>,
-    /// Factor at which a thick line is drawn.
-    pub limit: f64,
+    /// Factor at which a thick line is drawn, if any.
+    pub limit: Option<f64>,
 }
 
 /// Effects of changes one by one.
@@ -69,8 +69,8 @@ pub struct Bars {
     pub name: String,
     /// Factor without a change.
     pub base: Option<f64>,
-    /// Factor at which a line is drawn.
-    pub limit: f64,
+    /// Factor at which a line is drawn, if any.
+    pub limit: Option<f64>,
     /// Name of each key, with values and the factors that they make.
     pub bars: Vec<(String, Vec<(String, f64)>)>,
 }
@@ -151,18 +151,24 @@ pub fn curve_picture(curve: &Curve) -> Picture {
     let mut sheet = titled(&curve.title, &curve.caption, HEIGHT);
     let area = Rect { left: LEFT, top: TOP, width: WIDTH - LEFT - MARGIN, height: HEIGHT };
     let points = || curve.points.iter().filter(|point| point.iter().all(|number| number.is_finite()));
-    let up = Scale::of(points().map(|point| point[1]).chain([curve.limit]), 0.08);
+    let up = Scale::of(points().map(|point| point[1]).chain(curve.limit), 0.08);
     match (Scale::of(points().map(|point| point[0]), 0.03), up) {
         (Some(across), Some(up)) => {
             let frame = Frame { area, across, up };
             frame.draw_axes(&mut sheet, &curve.axes);
-            let limit = frame.pixel([across.low, curve.limit])[1];
-            sheet.line([area.left, limit], [area.right(), limit], Style::line(ACCENT, 2.5));
+            if let Some(limit) = curve.limit {
+                let height = frame.pixel([across.low, limit])[1];
+                sheet.line([area.left, height], [area.right(), height], Style::line(ACCENT, 2.5));
+            }
             sheet.path(Path::open(points().map(|point| frame.pixel(*point))), Style::line(LOCK, 2.6));
             for point in points() {
                 sheet.circle(frame.pixel(*point), MARK, Style::fill(WHITE).edged(LOCK, 2.0));
             }
-            curve.crossings.iter().for_each(|&value| draw_crossing(&mut sheet, &frame, curve.limit, value));
+            for (limit, &value) in
+                curve.limit.iter().flat_map(|limit| curve.crossings.iter().map(move |at| (limit, at)))
+            {
+                draw_crossing(&mut sheet, &frame, *limit, value);
+            }
         }
         _ => draw_nothing(&mut sheet, &area),
     }
@@ -230,8 +236,10 @@ impl Bands<'_> {
                 bands[k + 1].polygon(above);
                 line.chunks_exact(2).for_each(|ends| lines.line(ends.iter().copied()));
             }
-            let (_, line) = cut(&places, &outputs, self.grid.limit, &view);
-            line.chunks_exact(2).for_each(|ends| limit.line(ends.iter().copied()));
+            if let Some(level) = self.grid.limit {
+                let (_, line) = cut(&places, &outputs, level, &view);
+                line.chunks_exact(2).for_each(|ends| limit.line(ends.iter().copied()));
+            }
         }
         for (band, colour) in bands.into_iter().zip(self.colours) {
             sheet.path(band, Style::fill(*colour).crisp());
@@ -283,7 +291,7 @@ pub fn bars_picture(bars: &Bars) -> Picture {
     let mut sheet = titled(&bars.title, &bars.caption, height);
     let area = Rect { left: NAMES, top: TOP, width: WIDTH - NAMES - MARGIN, height };
     let factors = bars.bars.iter().flat_map(|(_, ends)| ends.iter().map(|(_, factor)| *factor));
-    match Scale::of(factors.chain(bars.base).chain([bars.limit]), 0.12) {
+    match Scale::of(factors.chain(bars.base).chain(bars.limit), 0.12) {
         Some(across) => draw_bars(&mut sheet, bars, &Frame { area, across, up: Scale { low: 0.0, high: 1.0 } }),
         None => draw_nothing(&mut sheet, &area),
     }
@@ -299,8 +307,9 @@ fn draw_bars(sheet: &mut Sheet, bars: &Bars, frame: &Frame) {
         draw_upright(sheet, &area, frame.pixel([value, 0.0])[0], &label, 4.0);
     }
     let across = |factor: f64| frame.pixel([factor, 0.0])[0];
-    let limit = across(bars.limit);
-    sheet.line([limit, area.top], [limit, area.bottom()], Style::line(ACCENT, 2.5));
+    if let Some(limit) = bars.limit.map(across) {
+        sheet.line([limit, area.top], [limit, area.bottom()], Style::line(ACCENT, 2.5));
+    }
     for (k, (name, ends)) in bars.bars.iter().enumerate() {
         let middle = area.top + 10.0 + BAR[0] * (k as f64 + 0.5);
         let style = TextStyle::new(TICK_SIZE).anchor(Anchor::End);

@@ -22,8 +22,8 @@ pub use enmm_record::{
     make_place, motion, summary, verdict, vtu,
 };
 pub use ensemble::{
-    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns,
-    ensemble,
+    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SampleOutput, SearchOptions, answer,
+    columns, ensemble,
 };
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::{write_bound_page, write_bracket_page};

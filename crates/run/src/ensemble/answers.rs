@@ -4,11 +4,10 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use enmm::engine_version;
-use enmm::model::case::EnsembleOutput;
 use enmm_ensemble::{Given, Identity, Row, Store, Value, sample_key, work};
 use enmm_io::LoadedCase;
 
-use super::{Answer, EnsembleError, EnsembleOptions, SearchOptions, columns};
+use super::{Answer, EnsembleError, EnsembleOptions, SampleOutput, SearchOptions, columns};
 
 /// Order to a worker.
 #[derive(Debug)]
@@ -18,7 +17,7 @@ pub struct Ask {
     /// Its values, as settings of the case.
     pub settings: Vec<String>,
     /// Output to work out of it.
-    pub output: EnsembleOutput,
+    pub output: SampleOutput,
     /// Options of the search.
     pub search: SearchOptions,
 }
@@ -27,7 +26,7 @@ pub struct Ask {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnsembleProgress {
     /// The output.
-    pub output: EnsembleOutput,
+    pub output: SampleOutput,
     /// When the work began.
     pub begun: Instant,
     /// Samples that the store had then.
@@ -36,7 +35,7 @@ pub struct EnsembleProgress {
     pub done: usize,
     /// Samples of which it is wanted.
     pub wanted: usize,
-    /// Of those that are done: how many have an answer, and how many of them are below the limit.
+    /// Of those that are done: how many have a factor, and how many of them are below the limit.
     pub answered: usize,
     /// See `answered`.
     pub below: usize,
@@ -90,9 +89,10 @@ impl<'a> Answers<'a> {
     pub fn find(
         &mut self,
         samples: &[usize],
-        output: EnsembleOutput,
+        output: impl Into<SampleOutput>,
         search: &SearchOptions,
     ) -> Result<Vec<Row>, EnsembleError> {
+        let output = output.into();
         let keys = self.sample_keys(samples, output, search);
         let names = columns(output);
         let mut found = keys.iter().map(|key| self.store.find(key, names)).collect::<Result<Vec<_>, _>>()?;
@@ -128,7 +128,7 @@ impl<'a> Answers<'a> {
     }
 
     /// Keys of samples in the store.
-    fn sample_keys(&self, samples: &[usize], output: EnsembleOutput, search: &SearchOptions) -> Vec<String> {
+    fn sample_keys(&self, samples: &[usize], output: SampleOutput, search: &SearchOptions) -> Vec<String> {
         let identity = Identity {
             case: self.loaded.hash.clone(),
             version: engine_version().to_owned(),
@@ -139,7 +139,7 @@ impl<'a> Answers<'a> {
     }
 
     /// Counts what the store has; rows that are to be worked out again do not count.
-    fn begin(&self, output: EnsembleOutput, found: &[Option<Row>]) -> EnsembleProgress {
+    fn begin(&self, output: SampleOutput, found: &[Option<Row>]) -> EnsembleProgress {
         let (wanted, limit) = (found.len(), self.loaded.case.ensemble.limit);
         let begun = Instant::now();
         let mut progress =
@@ -153,7 +153,8 @@ impl<'a> Answers<'a> {
 impl EnsembleProgress {
     fn note(&mut self, row: &Row, limit: f64, took: Option<(usize, f64)>) {
         self.done += 1;
-        if let Some(output) = row.number(columns(self.output)[0]) {
+        let factor = row.number(columns(self.output)[0]).filter(|_| self.output != SampleOutput::Displacement);
+        if let Some(output) = factor {
             self.answered += 1;
             self.below += usize::from(output < limit);
         }

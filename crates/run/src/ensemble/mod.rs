@@ -23,7 +23,8 @@ use enmm_record::{Folder, STORE, check_output, is_result};
 
 pub(crate) use answers::{Answers, Values};
 
-pub use answer::{answer, columns};
+pub(crate) use answer::FAILS;
+pub use answer::{SampleOutput, answer, columns};
 pub use answers::{Ask, EnsembleProgress};
 pub use record::EnsembleResult;
 pub(crate) use record::{Answered, messages, output_name, write_table};

@@ -12,14 +12,18 @@ use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{Fit, histogram_picture, three_digits};
 use serde_json::{Value as Json, json};
 
-use super::{CONFIDENCE, EnsembleError, EnsembleOptions, columns};
+use super::{CONFIDENCE, EnsembleError, EnsembleOptions, SampleOutput, columns};
 use enmm_record::input_record;
 
 /// Shares of the samples for which quantiles are given.
 const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// An output in words of readers who do not know limit analysis.
-pub(crate) fn output_name(output: EnsembleOutput) -> &'static str {
+pub(crate) fn output_name(output: impl Into<SampleOutput>) -> &'static str {
+    let output = match output.into() {
+        SampleOutput::Ensemble(output) => output,
+        SampleOutput::Displacement => return "largest displacement in the last stage [m]",
+    };
     match output {
         EnsembleOutput::FactorOfSafety => "factor of safety",
         EnsembleOutput::LevelTops => "factor of safety by limit analysis",

@@ -1,8 +1,8 @@
-//! Values at which the factor of a sweep passes the limit.
+//! Values between which the slope of a sweep begins to fail: its factor passes the limit.
 
 use enmm_ensemble::Value;
 
-/// A place along a key at which the factor passes the limit.
+/// A place along a key at which the slope begins or ends to fail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Value of the second key, in a contour.
@@ -10,7 +10,7 @@ pub struct Crossing {
     /// Neighbouring values of the first key, one on each side.
     pub between: [f64; 2],
     /// Value between them, on the straight line through both factors; none where one of them is a limit of the search
-    /// alone, or a sample between them has no answer.
+    /// alone, a sample between them has no answer, or the outputs are no factors.
     pub value: Option<f64>,
 }
 
@@ -19,24 +19,24 @@ pub struct Crossing {
 pub struct Along {
     /// Value of the key.
     pub value: f64,
-    /// Its factor; none without an answer.
+    /// Whether the slope fails; none without an answer.
+    pub fails: Option<bool>,
+    /// Its factor, if that is no limit of the search.
     pub factor: Option<f64>,
-    /// Whether the factor was found: it is no limit of the search.
-    pub is_found: bool,
 }
 
 /// Crossings along samples in ascending order of the key.
 pub fn crossings(samples: &[Along], limit: f64, at: Option<Value>) -> Vec<Crossing> {
-    let known: Vec<(usize, f64)> = (0..samples.len()).filter_map(|k| Some((k, samples[k].factor?))).collect();
+    let known: Vec<(usize, bool)> = (0..samples.len()).filter_map(|k| Some((k, samples[k].fails?))).collect();
     let mut found = Vec::new();
     for pair in known.windows(2) {
         let [(i, before), (j, after)] = [pair[0], pair[1]];
-        if (before < limit) == (after < limit) {
+        if before == after {
             continue;
         }
         let (low, high) = (samples[i].value, samples[j].value);
-        let is_sharp = j == i + 1 && samples[i].is_found && samples[j].is_found;
-        let value = is_sharp.then(|| low + (high - low) * (limit - before) / (after - before));
+        let factors = samples[i].factor.zip(samples[j].factor).filter(|_| j == i + 1);
+        let value = factors.map(|(before, after)| low + (high - low) * (limit - before) / (after - before));
         found.push(Crossing { at, between: [low, high], value });
     }
     found
@@ -49,8 +49,8 @@ mod tests {
     fn along(factors: &[f64]) -> Vec<Along> {
         let sample = |(k, &factor): (usize, &f64)| Along {
             value: k as f64,
-            factor: factor.is_finite().then_some(factor),
-            is_found: factor < 100.0,
+            fails: factor.is_finite().then_some(factor < 1.0),
+            factor: Some(factor).filter(|factor| *factor < 100.0),
         };
         factors.iter().enumerate().map(sample).collect()
     }

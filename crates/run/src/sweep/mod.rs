@@ -1,4 +1,4 @@
-//! A sweep: the factor of safety of a case over values of its keys, as a curve, a contour or a tornado.
+//! A sweep: the factor of safety of a case, or its displacement, over values of its keys, as a curve, a contour or a tornado.
 //!
 //! Samples of a sweep go to the store of an ensemble, by the same workers; the results are written when all are there.
 
@@ -13,7 +13,7 @@ use enmm::model::case::EnsembleOutput;
 use enmm_io::LoadedCase;
 
 use crate::ensemble::{
-    Answer, Answers, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, SearchOptions, Values, hold,
+    Answer, Answers, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, SampleOutput, SearchOptions, Values, hold,
 };
 
 pub use change::Change;
@@ -53,7 +53,7 @@ pub struct Sweep {
     /// Picture that they make.
     pub kind: SweepKind,
     /// Output of each sample.
-    pub output: EnsembleOutput,
+    pub output: SampleOutput,
 }
 
 impl Sweep {
@@ -61,7 +61,7 @@ impl Sweep {
     ///
     /// # Errors
     /// A key occurs twice, or the number of keys or values makes no picture.
-    pub fn new(changes: Vec<Change>, one_by_one: bool, output: EnsembleOutput) -> Result<Self, String> {
+    pub fn new(changes: Vec<Change>, one_by_one: bool, output: SampleOutput) -> Result<Self, String> {
         let twice = (1..changes.len()).find(|&k| changes[..k].iter().any(|other| other.key == changes[k].key));
         if let Some(k) = twice {
             return Err(format!("{}: is given twice; give all its values at once", changes[k].key));
@@ -136,8 +136,8 @@ pub fn sweep(
     let clock = Instant::now();
     let _held = hold(loaded, options)?;
     let mut answers = Answers::open(loaded, options, sweep.samples(), &ask, hear)?;
-    // Bounds have no search.
-    let is_searched = sweep.output == EnsembleOutput::FactorOfSafety;
+    // Bounds and runs have no search.
+    let is_searched = sweep.output == EnsembleOutput::FactorOfSafety.into();
     let search = if is_searched { options.search } else { SearchOptions::default() };
     let all: Vec<usize> = (0..answers.count()).collect();
     let rows = answers.find(&all, sweep.output, &search)?;

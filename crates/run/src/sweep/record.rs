@@ -12,7 +12,9 @@ use serde_json::{Map, Value as Json, json};
 
 use super::crossing::{Along, Crossing, crossings};
 use super::{Change, Sweep, SweepKind};
-use crate::ensemble::{Answered, EnsembleError, EnsembleOptions, Values, columns, messages, write_table};
+use crate::ensemble::{
+    Answered, EnsembleError, EnsembleOptions, FAILS, SampleOutput, Values, columns, messages, write_table,
+};
 
 /// The samples of a sweep, and what follows from them.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,14 +33,14 @@ pub struct SweepResult {
     pub doubtful: Vec<(usize, String)>,
 }
 
-/// What the values of one key alone make of the factor.
+/// What the values of one key alone make of the output.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effect {
     /// The key.
     pub key: String,
-    /// Its values, ascending, with the factors that have an answer.
-    pub factors: Vec<(Value, f64)>,
-    /// Distance of the least from the greatest factor, that of the case among them.
+    /// Its values, ascending, with the outputs that are there.
+    pub outputs: Vec<(Value, f64)>,
+    /// Distance of the least from the greatest output, that of the case among them.
     pub range: f64,
 }
 
@@ -48,29 +50,40 @@ impl SweepResult {
         Ok(Self { samples: sweep.samples(), sweep, rows, limit, failed, doubtful })
     }
 
-    /// Factor of a sample; none without an answer.
-    pub fn factor(&self, k: usize) -> Option<f64> {
+    /// Whether the outputs are factors of safety.
+    pub fn has_factors(&self) -> bool {
+        self.sweep.output != SampleOutput::Displacement
+    }
+
+    /// Whether the slope of a sample fails; none without an answer.
+    pub fn fails(&self, k: usize) -> Option<bool> {
+        let output = self.output(k)?;
+        Some(if self.has_factors() { output < self.limit } else { self.status(k) == FAILS })
+    }
+
+    /// Output of a sample: its factor, or its displacement (m); none without an answer.
+    pub fn output(&self, k: usize) -> Option<f64> {
         self.rows[k].number(columns(self.sweep.output)[0])
     }
 
-    /// How the factor of a sample is one: `found`, or the way in which it is a limit alone.
+    /// How the factor of a sample is one: `found`, or the way in which it is a limit alone; how a run ended.
     pub fn status(&self, k: usize) -> &str {
         self.rows[k].text("status")
     }
 
-    /// Least and greatest factor.
+    /// Least and greatest output.
     pub fn range(&self) -> [f64; 2] {
-        let factors = (0..self.rows.len()).filter_map(|k| self.factor(k));
-        factors.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], f| [low.min(f), high.max(f)])
+        let outputs = (0..self.rows.len()).filter_map(|k| self.output(k));
+        outputs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
-    /// Places along the first key at which the factor passes the limit, for each value of the second one; none of a
+    /// Places along the first key at which the slope begins or ends to fail, for each value of the second one; none of a
     /// tornado, which has no order of values.
     pub fn crossings(&self) -> Vec<Crossing> {
         let along = |k: usize, value: &Value| Along {
             value: value.number(),
-            factor: self.factor(k),
-            is_found: self.status(k) == "found",
+            fails: self.fails(k),
+            factor: self.output(k).filter(|_| self.status(k) == "found"),
         };
         let row = |first: usize, across: &Change| -> Vec<Along> {
             across.values.iter().enumerate().map(|(i, value)| along(first + i, value)).collect()
@@ -89,14 +102,14 @@ impl SweepResult {
 
     /// Effects of the changes of a tornado, the greatest first.
     pub fn effects(&self) -> Vec<Effect> {
-        let base = self.factor(0);
+        let base = self.output(0);
         let effect = |change: &Change| {
             let own = (0..self.samples.len()).filter(|&k| self.samples[k].iter().any(|(key, _)| *key == change.key));
-            let factors: Vec<(Value, f64)> =
-                own.filter_map(|k| Some((self.samples[k][0].1, self.factor(k)?))).collect();
-            let all = || factors.iter().map(|(_, factor)| *factor).chain(base);
+            let outputs: Vec<(Value, f64)> =
+                own.filter_map(|k| Some((self.samples[k][0].1, self.output(k)?))).collect();
+            let all = || outputs.iter().map(|(_, output)| *output).chain(base);
             let range = (all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)).max(0.0);
-            Effect { key: change.key.clone(), factors, range }
+            Effect { key: change.key.clone(), outputs, range }
         };
         let mut effects: Vec<Effect> = self.sweep.changes.iter().map(effect).collect();
         effects.sort_by(|a, b| b.range.total_cmp(&a.range));
@@ -121,7 +134,7 @@ impl SweepResult {
             let own = self.samples[k].iter().find(|(other, _)| other == key);
             own.map_or_else(String::new, |(_, value)| value.to_string())
         };
-        let good = (0..self.rows.len()).filter(|&k| self.factor(k).is_some());
+        let good = (0..self.rows.len()).filter(|&k| self.output(k).is_some());
         let rows = good.map(|k| (k, keys.iter().map(|key| value(k, key)).collect(), &self.rows[k]));
         write_table(path, &keys, columns(self.sweep.output), rows)
     }
@@ -149,7 +162,7 @@ impl SweepResult {
         });
         match self.sweep.kind {
             SweepKind::Tornado => {
-                record["factor_of_the_case"] = json!(self.factor(0));
+                record["of_the_case"] = json!(self.output(0));
                 record["effects"] = self.effects().iter().map(effect).collect();
             }
             _ => record["crossings"] = self.crossings().iter().map(crossing).collect(),
@@ -160,7 +173,8 @@ impl SweepResult {
     fn sample(&self, k: usize) -> Json {
         let values: Map<String, Json> =
             self.samples[k].iter().map(|(key, value)| (key.clone(), plain(*value))).collect();
-        json!({ "values": values, "factor": self.factor(k), "status": self.status(k) })
+        let outputs = self.rows[k].outputs.iter().cloned();
+        Json::Object([("values".to_owned(), Json::Object(values))].into_iter().chain(outputs).collect())
     }
 }
 
@@ -185,6 +199,6 @@ fn crossing(crossing: &Crossing) -> Json {
 }
 
 fn effect(effect: &Effect) -> Json {
-    let factors: Vec<Json> = effect.factors.iter().map(|(value, factor)| json!([plain(*value), factor])).collect();
-    json!({ "key": effect.key, "factors": factors, "range": effect.range })
+    let outputs: Vec<Json> = effect.outputs.iter().map(|(value, output)| json!([plain(*value), output])).collect();
+    json!({ "key": effect.key, "outputs": outputs, "range": effect.range })
 }
