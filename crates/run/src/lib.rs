@@ -7,6 +7,7 @@ mod ensemble;
 pub mod fos;
 mod found;
 mod mechanism_page;
+mod meshes;
 mod model_page;
 pub mod rock_mass;
 mod run;
@@ -27,6 +28,7 @@ pub use ensemble::{
 };
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::{write_bound_page, write_bracket_page};
+pub use meshes::{Meshes, OnMesh};
 pub use model_page::write_model_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};
 pub use stereonet::{NetOptions, apparent, stereonet};
