@@ -202,6 +202,7 @@ fn no_crossing(found: &SweepResult) -> String {
     let [low, high] = found.range();
     let fails = || (0..found.rows.len()).filter_map(|k| found.fails(k));
     match found.sweep.kind {
+        _ if !found.has_factors() && fails().next().is_none() => "no run has a verdict".to_owned(),
         _ if !found.has_factors() && fails().all(|fails| fails) => "at all values".to_owned(),
         _ if !found.has_factors() && !fails().any(|fails| fails) => "at no value".to_owned(),
         _ if !found.has_factors() => "at some values".to_owned(),

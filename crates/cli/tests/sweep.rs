@@ -141,7 +141,7 @@ fn changes_one_by_one_make_a_tornado_with_the_greatest_effect_first() {
 /// The block slides where tan φ is less than 0.5.
 #[test]
 fn runs_tell_between_which_values_the_slope_begins_to_fail() {
-    let place = place();
+    let place = Place::with(&incline(0.6, ""));
     let answer = sweep(&place, &[&format!("{FRICTION}=20,24,29,33"), "--of", "run", "-o", "out"]);
     assert_eq!(answer.status, Some(0), "{answer:?}");
     let found = json(&place.path("out/sweep.json"));

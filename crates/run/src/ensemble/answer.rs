@@ -93,6 +93,8 @@ pub fn answer(
 
 /// Status of a run whose slope failed.
 pub const FAILS: &str = "fails";
+/// Status of a run that did not fail and did not come to rest.
+pub const NO_VERDICT: &str = "no_verdict";
 
 type Values = Result<Vec<Value>, String>;
 
@@ -121,7 +123,7 @@ fn displacement(sample: &LoadedCase) -> Values {
     let is_restless = summary.stages.iter().any(|stage| stage.converged == Some(false));
     let status = match (summary.failed, is_restless) {
         (true, _) => FAILS,
-        (false, true) => "restless",
+        (false, true) => NO_VERDICT,
         (false, false) => "stands",
     };
     Ok(vec![json!(displacement), json!(status), json!(summary.verdict)])

@@ -23,7 +23,7 @@ use enmm_record::{Folder, STORE, check_output, is_result};
 
 pub(crate) use answers::{Answers, Values};
 
-pub(crate) use answer::FAILS;
+pub(crate) use answer::{FAILS, NO_VERDICT};
 pub use answer::{SampleOutput, answer, columns};
 pub use answers::{Ask, EnsembleProgress};
 pub use record::EnsembleResult;

@@ -13,7 +13,7 @@ use serde_json::{Map, Value as Json, json};
 use super::crossing::{Along, Crossing, crossings};
 use super::{Change, Sweep, SweepKind};
 use crate::ensemble::{
-    Answered, EnsembleError, EnsembleOptions, FAILS, SampleOutput, Values, columns, messages, write_table,
+    Answered, EnsembleError, EnsembleOptions, FAILS, NO_VERDICT, SampleOutput, Values, columns, messages, write_table,
 };
 
 /// The samples of a sweep, and what follows from them.
@@ -55,10 +55,14 @@ impl SweepResult {
         self.sweep.output != SampleOutput::Displacement
     }
 
-    /// Whether the slope of a sample fails; none without an answer.
+    /// Whether the slope of a sample fails; none without an answer or a verdict.
     pub fn fails(&self, k: usize) -> Option<bool> {
         let output = self.output(k)?;
-        Some(if self.has_factors() { output < self.limit } else { self.status(k) == FAILS })
+        match self.status(k) {
+            _ if self.has_factors() => Some(output < self.limit),
+            NO_VERDICT => None,
+            status => Some(status == FAILS),
+        }
     }
 
     /// Output of a sample: its factor, or its displacement (m); none without an answer.
