@@ -268,13 +268,21 @@ fn finer_meshes_tell_the_error_of_the_mesh() {
 /// Generated joints, and which crumbs join a neighbour, are those of the mesh of the case.
 #[test]
 fn finer_meshes_have_the_same_blocks() {
-    let set = "[[joint_set]]\ndip_deg = 63.4\nspacing = 0.31\nspacing_sd = 0.1\nseed = 3\nlaw = \"plane\"\n";
-    let place = Place::with(&(incline(0.65, "").replace("duration = 5.0", "duration = 1.0") + set));
+    let set = r#"
+[[joint_set]]
+angle_deg = 153.435
+spacing = 0.21
+spacing_sd = 0.1
+seed = 3
+law = "plane"
+region = [[2.7, 2.6], [4.1, 2.0], [4.5, 2.8], [3.2, 3.5]]
+"#;
+    let place = Place::with(&(incline(0.65, "") + set));
     let words = ["fos", "case.toml", "-o", "out", "--tolerance", "0.2", "--least-area", "0", "--meshes", "3"];
-    let answer = place.enmm(&words);
+    place.answers(0, &words);
     let meshes = json(&place.path("out/fos.json"))["meshes"].clone();
-    let blocks: Vec<Option<u64>> =
-        meshes["searches"].as_array().expect("a list").iter().map(|on| on["blocks"].as_u64()).collect();
-    assert!(blocks.len() == 3 && blocks[0].is_some_and(|count| count > 10), "{meshes}: {answer:?}");
+    let searches = meshes["searches"].as_array().expect("a list");
+    let blocks: Vec<Option<u64>> = searches.iter().map(|on| on["blocks"].as_u64()).collect();
+    assert!(blocks.len() == 3 && blocks[0].is_some_and(|count| count >= 5), "{meshes}");
     assert!(blocks.iter().all(|count| *count == blocks[0]), "{blocks:?}");
 }

@@ -15,7 +15,6 @@ pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
 use super::meshes::{Meshes, OnMesh};
 use enmm::engine_version;
-use enmm::model::case::Mesh;
 use enmm::model::{Case, Mechanism};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
@@ -55,8 +54,8 @@ pub struct FosOptions<'a> {
     pub pictures: bool,
     /// The static stage after which the slope is looked at; the last one when none is given.
     pub stage: Option<String>,
-    /// Meshes on which to look for it, the first that of the case and each finer by √2: more than one tells the error of
-    /// the mesh.
+    /// Meshes on which to look for it, the first that of the case and each finer by √2: more than one tells the error
+    /// of the mesh.
     pub meshes: usize,
     /// Set by another thread to end the search with the trials that are done.
     pub interrupt: Option<&'a AtomicBool>,
@@ -242,10 +241,10 @@ fn on_mesh(size: f64, reduction: &Reduction) -> OnMesh {
     }
 }
 
-/// The case on another mesh, with the blocks and the measure of failure of its own: their defaults follow the mesh size.
+/// The case on another mesh, with the blocks and the measure of failure of its own, whose defaults follow the size.
 fn refined(case: &Case, size: f64) -> Case {
     let mut finer = case.clone();
-    finer.mesh = Mesh { size, least_block: Some(case.mesh.least_block()), ..case.mesh.clone() };
+    finer.mesh = case.mesh.of_size(size);
     finer.solver.failure_displacement = case.solver.failure_displacement.or(Some(case.mesh.size));
     finer
 }

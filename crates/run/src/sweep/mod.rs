@@ -1,4 +1,5 @@
-//! A sweep: the factor of safety of a case, or its displacement, over values of its keys, as a curve, a contour or a tornado.
+//! A sweep: the factor of safety of a case, or its displacement, over values of its keys, as a curve, a contour or a
+//! tornado.
 //!
 //! Samples of a sweep go to the store of an ensemble, by the same workers; the results are written when all are there.
 

@@ -33,7 +33,7 @@ pub struct SweepResult {
     pub doubtful: Vec<(usize, String)>,
 }
 
-/// What the values of one key alone make of the output.
+/// Effect of the values of one key alone on the output.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effect {
     /// The key.
@@ -81,8 +81,8 @@ impl SweepResult {
         outputs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
-    /// Places along the first key at which the slope begins or ends to fail, for each value of the second one; none of a
-    /// tornado, which has no order of values.
+    /// Places along the first key at which the slope begins or ends to fail, for each value of the second one; none of
+    /// a tornado, which has no order of values.
     pub fn crossings(&self) -> Vec<Crossing> {
         let along = |k: usize, value: &Value| Along {
             value: value.number(),
