@@ -53,8 +53,8 @@ pub struct Arguments {
     /// Mechanisms to find, each without the blocks of those before.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     mechanisms: u16,
-    /// Meshes to look for it on, the geometry as it is: that of the case, and each finer by √2 than the one before. More
-    /// than one tells the error of the mesh.
+    /// Meshes to look for it on, with the same geometry: that of the case, and each finer by √2 than the one before.
+    /// More than one tells the error of the mesh.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10))]
     meshes: u16,
     /// Threads; default: all. Results do not depend on it.

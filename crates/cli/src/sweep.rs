@@ -1,4 +1,5 @@
-//! `enmm sweep`: the factor of safety of a case, or its displacement, over values of keys, as a curve, a contour or a tornado.
+//! `enmm sweep`: the factor of safety of a case, or its displacement, over values of keys, as a curve, a contour or a
+//! tornado.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -243,7 +243,7 @@ fn a_factor_above_the_upper_bound_is_at_most_that_and_has_a_status_of_its_own() 
     assert!((0.88..0.93).contains(&most) && found["bound"]["upper"]["factor"].as_f64() == Some(most), "{most}");
 }
 
-/// A block slides as one piece on any mesh: F = tan φ/tan α, and what the meshes differ by is left open by the brackets.
+/// A block slides as one piece on any mesh: F = tan φ/tan α, and no mesh differs by more than the brackets leave open.
 #[test]
 fn finer_meshes_tell_the_error_of_the_mesh() {
     let place = Place::with(&incline(0.65, "").replace("duration = 5.0", "duration = 1.0"));
