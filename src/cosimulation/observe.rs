@@ -9,8 +9,8 @@ use crate::state::{Event, EventKind, Ledger, Port, PortKind, Quantity};
 use super::{Cosimulation, CosimulationError, Forces, Named};
 
 /// A port as hosts see it. A block fills all up to the stress; a boundary displacement, velocity and stress; joints
-/// normal and shear force, slip and the water that flows in them; a quiet boundary displacement, velocity and traction; a fixity displacement,
-/// velocity and reaction.
+/// normal and shear force, slip and the water that flows in them; a quiet boundary displacement, velocity and traction;
+/// a fixity displacement, velocity and reaction.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PortState {
     /// Displacement of the block's mass centroid, or the mean along the boundary (m).

@@ -71,6 +71,11 @@ impl Mesh {
     pub fn least_block(&self) -> f64 {
         self.least_block.unwrap_or((LEAST_RATIO * self.size).powi(2))
     }
+
+    /// A lattice of another size that leaves the same blocks.
+    pub fn of_size(&self, size: f64) -> Self {
+        Self { size, least_block: Some(self.least_block()), ..self.clone() }
+    }
 }
 
 keys! {

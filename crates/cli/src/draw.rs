@@ -35,10 +35,10 @@ fn answer(text: &str) -> Result<String, String> {
     let identity = Identity { case, version: engine_version().to_owned(), output, options };
     let value = |value: &Value| match *value {
         Value::Number(number) => json!(number),
-        Value::Seed(seed) => json!(seed),
+        Value::Whole(whole) => json!(whole),
     };
     let rows: Vec<Vec<Json>> = samples.rows.iter().map(|row| row.iter().map(value).collect()).collect();
-    let keys: Vec<_> = samples.rows.iter().map(|row| sample_key(&identity, &samples.keys, row)).collect();
+    let keys: Vec<_> = (0..rows.len()).map(|k| sample_key(&identity, &samples.values(k))).collect();
     Ok(json!({ "samples": rows, "keys": keys }).to_string())
 }
 

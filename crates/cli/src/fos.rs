@@ -53,6 +53,10 @@ pub struct Arguments {
     /// Mechanisms to find, each without the blocks of those before.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     mechanisms: u16,
+    /// Meshes to look for it on, with the same geometry: that of the case, and each finer by √2 than the one before.
+    /// More than one tells the error of the mesh.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10))]
+    meshes: u16,
     /// Threads; default: all. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -90,6 +94,7 @@ fn find(arguments: &Arguments) -> Outcome {
         threads: arguments.threads.map(usize::from),
         pictures: !arguments.no_pictures,
         stage: arguments.stage.clone(),
+        meshes: arguments.meshes.into(),
         interrupt: Some(&INTERRUPT),
     };
     options.check().or_fail(BAD_INPUT)?;
@@ -157,9 +162,13 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
     } else {
         let results = format!("{:<20} {}\n", "results", directory.display());
         let page = format!("{:<20} {}", "page to open", directory.join(PAGE).display());
-        let searches = found.searches.iter().map(|search| result(search, found, told)).chain(chips(found));
+        let searches =
+            found.searches.iter().map(|search| result(search, found, told)).chain(chips(found)).chain(meshes(found));
         let page = (!arguments.no_pictures).then_some(page);
         print_line(searches.chain([results]).chain(page).collect::<String>().trim_end());
+    }
+    if found.meshes.as_ref().is_some_and(|meshes| meshes.is_interrupted) {
+        return Ok(fail(&"interrupted; the factors of the meshes so far are kept", INTERRUPTED));
     }
     let main = found.main();
     let message = remedy(main).unwrap_or_default();
@@ -250,6 +259,30 @@ fn chips(found: &Found) -> Option<String> {
     let chips: Vec<String> = found.chips().map(of_chip).collect();
     (!chips.is_empty())
         .then(|| format!("\n{:<20} slope {}; {}\n", "altogether", factor(found.main()), chips.join(", ")))
+}
+
+/// The factor on each mesh, and what they tell of the error of that of the case.
+fn meshes(found: &Found) -> Option<String> {
+    let meshes = found.meshes.as_ref()?;
+    let mut lines =
+        vec![String::new(), format!("{:<20} {:>10} {:>9}  factor of safety", "meshes", "size (m)", "elements")];
+    for on in &meshes.searches {
+        let elements = on.counts.map_or_else(String::new, |[elements, _]| elements.to_string());
+        let factor = match on.bracket {
+            Some([low, high]) => format!("{:.4} (stable at {low:.4}, not at {high:.4})", 0.5 * (low + high)),
+            None => on.end.replace('_', " "),
+        };
+        lines.push(format!("{:<20} {:>10.4} {elements:>9}  {factor}", "", on.size));
+    }
+    let text = match (meshes.extrapolated(), meshes.error()) {
+        (Some([at_zero, within]), Some(error)) => {
+            let small = if error.abs() <= within { ", no more than the brackets leave open" } else { "" };
+            format!("{error:+.4} of F, which is {at_zero:.4} ± {within:.4} on a mesh of 0 m by a straight line{small}")
+        }
+        _ => "none: fewer than two factors, or none on the mesh of the case".to_owned(),
+    };
+    lines.push(format!("{:<20} {text}", "error of the mesh"));
+    Some(lines.join("\n") + "\n")
 }
 
 /// Greatest force of each bolt, and by which convention.

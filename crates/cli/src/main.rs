@@ -20,9 +20,11 @@ mod report;
 mod run;
 mod sample;
 mod stereonet;
+mod sweep;
 mod told;
 mod verify;
 mod view;
+mod workers;
 
 use std::process::ExitCode;
 
@@ -85,6 +87,8 @@ enum Command {
     Fos(fos::Arguments),
     /// Finds the probability of failure of a case with random values from many samples.
     Sample(sample::Arguments),
+    /// Finds how the factor of safety changes with keys of a case: a curve, a contour or a tornado.
+    Sweep(sweep::Arguments),
     /// Draws the samples that standard input describes; how the Python package calls the program.
     #[command(hide = true)]
     Draw,
@@ -133,6 +137,7 @@ fn execute(command: Command) -> Outcome {
         Command::Verify(arguments) => verify::verify(&arguments),
         Command::Fos(arguments) => fos::fos(&arguments),
         Command::Sample(arguments) => sample::sample(&arguments),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Draw => draw::draw(),
         Command::Bound(arguments) => bound::bound(&arguments),
         Command::Report(arguments) => report::report(&arguments),

@@ -242,3 +242,51 @@ fn a_factor_above_the_upper_bound_is_at_most_that_and_has_a_status_of_its_own() 
     let most = found["at_most"].as_f64().expect("a number");
     assert!((0.88..0.93).contains(&most) && found["bound"]["upper"]["factor"].as_f64() == Some(most), "{most}");
 }
+
+/// A block slides as one piece on any mesh: F = tan φ/tan α, and no mesh differs by more than the brackets leave open.
+#[test]
+fn finer_meshes_tell_the_error_of_the_mesh() {
+    let place = Place::with(&incline(0.65, "").replace("duration = 5.0", "duration = 1.0"));
+    let words = ["fos", "case.toml", "-o", "out", "--tolerance", "0.01", "--meshes", "3"];
+    let answer = place.answers(0, &words);
+    answer.assert_printed(&["meshes", "error of the mesh", "0.4500"]);
+    let meshes = json(&place.path("out/fos.json"))["meshes"].clone();
+    let searches = meshes["searches"].as_array().expect("a list");
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let sizes: Vec<f64> = searches.iter().map(|on| number(&on["mesh_size"])).collect();
+    assert!(sizes.len() == 3 && sizes[0] == 0.9 && (sizes[2] - 0.45).abs() < 1e-12, "{sizes:?}");
+    assert!((sizes[1] - 0.9 / 2f64.sqrt()).abs() < 1e-12, "{sizes:?}");
+    assert!(number(&searches[2]["elements"]) > 2.0 * number(&searches[0]["elements"]), "{meshes}");
+    assert!(searches.iter().all(|on| (number(&on["factor_of_safety"]) / 1.3 - 1.0).abs() < 0.01), "{meshes}");
+    assert!(number(&meshes["mesh_error"]).abs() <= number(&meshes["extrapolated_within"]), "{meshes}");
+    place.answers(0, &["report", "out", "--no-pdf"]);
+    let report = std::fs::read_to_string(place.path("out/report_a4.html")).expect("a report");
+    assert!(report.contains("Error of the mesh in F"), "the error of the mesh on page 1");
+    assert!(json(&place.path("out/fos.json"))["factor_of_safety"] == searches[0]["factor_of_safety"]);
+}
+
+/// Generated joints are those of the mesh of the case, and so are crumbs: one of 0.00125 m² is between the defaults of
+/// the least block of the first two meshes.
+#[test]
+fn finer_meshes_have_the_same_blocks() {
+    let set = r#"
+[[joint]]
+points = [[4.37764, 2.75528], [4.35528, 2.82236]]
+law = "plane"
+[[joint_set]]
+angle_deg = 153.435
+spacing = 0.21
+spacing_sd = 0.1
+seed = 3
+law = "plane"
+region = [[2.7, 2.6], [4.1, 2.0], [4.5, 2.8], [3.2, 3.5]]
+"#;
+    let place = Place::with(&(incline(0.65, "") + set));
+    let words = ["fos", "case.toml", "-o", "out", "--tolerance", "0.2", "--least-area", "0", "--meshes", "3"];
+    place.answers(0, &words);
+    let meshes = json(&place.path("out/fos.json"))["meshes"].clone();
+    let searches = meshes["searches"].as_array().expect("a list");
+    let blocks: Vec<Option<u64>> = searches.iter().map(|on| on["blocks"].as_u64()).collect();
+    assert!(blocks.len() == 3 && blocks[0].is_some_and(|count| count >= 5), "{meshes}");
+    assert!(blocks.iter().all(|count| *count == blocks[0]), "{blocks:?}");
+}

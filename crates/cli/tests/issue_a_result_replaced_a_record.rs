@@ -30,6 +30,7 @@ fn no_command_replaces_an_input() {
         ("report.html", &["bound", "case.toml", "-o", "."]),
         ("model.png", &["check", "case.toml", "-o", "."]),
         ("ensemble.csv", &["sample", "case.toml", "-o", "."]),
+        ("sweep.csv", &["sweep", "case.toml", "joint_law.plane.friction_deg=20,30", "-o", "."]),
         ("store.sqlite", &["sample", "case.toml", "-o", "out", "--store", "store.sqlite"]),
         ("packed.fmu", &["fmu", "case.toml", "-o", "packed.fmu"]),
     ] {

@@ -30,4 +30,5 @@ mod sample;
 mod set;
 mod stereonet;
 mod support;
+mod sweep;
 mod verify;

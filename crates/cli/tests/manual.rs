@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::support::Place;
 
-const COMMANDS: [&str; 8] = ["run", "check", "fos", "bound", "import", "stereonet", "edit", "view"];
+const COMMANDS: [&str; 9] = ["run", "check", "fos", "bound", "sweep", "import", "stereonet", "edit", "view"];
 
 #[test]
 fn every_command_has_a_page_and_is_completed() {
@@ -32,7 +32,7 @@ fn help_has_examples_and_the_exit_status() {
     for part in ["Examples:", "enmm fos slope.toml", "Exit status:", "130"] {
         assert!(help.stdout.contains(part), "{part:?} is not in {}", help.stdout);
     }
-    for command in ["run", "check", "fos", "bound", "import", "stereonet", "edit"] {
+    for command in ["run", "check", "fos", "bound", "sweep", "import", "stereonet", "edit"] {
         let help = place.enmm(&[command, "--help"]);
         assert!(help.stdout.contains("Example: enmm "), "{command}: {}", help.stdout);
     }

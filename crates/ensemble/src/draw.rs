@@ -13,15 +13,25 @@ use crate::{normal, philox};
 pub enum Value {
     /// A number.
     Number(f64),
-    /// A seed.
-    Seed(u64),
+    /// A whole number, such as a seed.
+    Whole(u64),
+}
+
+impl Value {
+    /// The value as a number.
+    pub fn number(&self) -> f64 {
+        match *self {
+            Self::Number(number) => number,
+            Self::Whole(whole) => whole as f64,
+        }
+    }
 }
 
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Number(number) => write!(f, "{number:?}"),
-            Self::Seed(seed) => write!(f, "{seed}"),
+            Self::Whole(whole) => write!(f, "{whole}"),
         }
     }
 }
@@ -38,9 +48,9 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// The values of sample `k` as settings of the case, `key=value`.
-    pub fn settings(&self, k: usize) -> Vec<String> {
-        self.keys.iter().zip(&self.rows[k]).map(|(key, value)| format!("{key}={value}")).collect()
+    /// The values of sample `k` with their keys.
+    pub fn values(&self, k: usize) -> Vec<(String, Value)> {
+        self.keys.iter().cloned().zip(self.rows[k].iter().copied()).collect()
     }
 }
 
@@ -87,7 +97,7 @@ pub fn draw_from(
     let row = |k: usize| {
         let mut continuous = columns.iter();
         let value = |variable: &Variable| match variable {
-            Variable::Seeds(first) => Value::Seed(first + k as u64),
+            Variable::Seeds(first) => Value::Whole(first + k as u64),
             Variable::Continuous(_) => {
                 Value::Number(continuous.next().map_or(f64::NAN, |column| column.distribution.value(column.chance[k])))
             }
@@ -109,7 +119,7 @@ pub fn medians(case: &Case) -> Result<Vec<String>, Invalid> {
     let median = |(i, row): (usize, &RandomVariable)| {
         let value = match Variable::of(row, i)? {
             Variable::Continuous(distribution) => Value::Number(distribution.value(0.5)),
-            Variable::Seeds(first) => Value::Seed(first),
+            Variable::Seeds(first) => Value::Whole(first),
         };
         Ok(format!("{}={value}", row.key))
     };
@@ -205,11 +215,7 @@ mod tests {
     }
 
     fn column(samples: &Samples, i: usize) -> Vec<f64> {
-        let number = |row: &Vec<Value>| match row[i] {
-            Value::Number(number) => number,
-            Value::Seed(seed) => seed as f64,
-        };
-        samples.rows.iter().map(number).collect()
+        samples.rows.iter().map(|row| row[i].number()).collect()
     }
 
     #[test]

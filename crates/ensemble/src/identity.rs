@@ -30,8 +30,8 @@ pub enum Given {
 }
 
 /// Key of a sample in the store, 64 hexadecimal digits: SHA-256 of lines with all that the sample depends on, numbers
-/// as the hexadecimal digits of their bits, seeds in decimal digits.
-pub fn sample_key(identity: &Identity, keys: &[String], values: &[Value]) -> String {
+/// as the hexadecimal digits of their bits, whole numbers in decimal digits.
+pub fn sample_key(identity: &Identity, values: &[(String, Value)]) -> String {
     let Identity { case, version, output, options } = identity;
     let mut text = format!("enmm sample 1\ncase {case}\nversion {version}\noutput {output}\n");
     let mut line = |what: &str, name: &str, value: String| {
@@ -44,11 +44,11 @@ pub fn sample_key(identity: &Identity, keys: &[String], values: &[Value]) -> Str
             Given::Name(text) => line("option", name, format!("{text:?}")),
         }
     }
-    let sorted: BTreeMap<&String, &Value> = keys.iter().zip(values).collect();
+    let sorted: BTreeMap<&String, &Value> = values.iter().map(|(key, value)| (key, value)).collect();
     for (key, value) in sorted {
         let value = match value {
             Value::Number(number) => bits(*number),
-            Value::Seed(seed) => seed.to_string(),
+            Value::Whole(whole) => whole.to_string(),
         };
         line("value", key, value);
     }

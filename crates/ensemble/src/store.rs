@@ -99,15 +99,15 @@ impl Store {
         &self,
         key: &str,
         k: usize,
-        values: &[(&str, Value)],
+        values: &[(String, Value)],
         row: &Row,
         (seconds, version): (f64, &str),
     ) -> Result<(), StoreError> {
         let number = |value: &Value| match value {
             Value::Number(number) => Json::from(*number),
-            Value::Seed(seed) => Json::from(*seed),
+            Value::Whole(whole) => Json::from(*whole),
         };
-        let given: Map<String, Json> = values.iter().map(|(name, value)| ((*name).to_owned(), number(value))).collect();
+        let given: Map<String, Json> = values.iter().map(|(name, value)| (name.clone(), number(value))).collect();
         let status = if row.is_done() { "done" } else { "failed" };
         let place = i64::try_from(k).unwrap_or(i64::MAX);
         let mut statement = self

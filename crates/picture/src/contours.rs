@@ -65,7 +65,7 @@ pub fn mean_stress_contours(stage: &StageEnd, reference: &[Point]) -> Picture {
 }
 
 /// Round levels within a range of values, and their labels in units of `size`; without those at its ends.
-fn round_levels([low, high]: [f64; 2], size: f64) -> (Vec<f64>, Vec<String>) {
+pub(super) fn round_levels([low, high]: [f64; 2], size: f64) -> (Vec<f64>, Vec<String>) {
     let ticks = Ticks::new(low / size, high / size, LEVELS);
     let inside = ticks.values.iter().filter(|&&value| low < value * size && value * size < high);
     inside.map(|&value| (value * size, ticks.label(value))).unzip()
@@ -138,7 +138,7 @@ fn draw(stage: &StageEnd, what: &str, title: &str, note: &str, field: &Field) ->
 }
 
 /// The part of a polygon in which the field is not below a level (px), and the ends of the pieces of its contour.
-fn cut(places: &[Point], values: &[f64], level: f64, view: &View) -> (Vec<Pixel>, Vec<Pixel>) {
+pub(super) fn cut(places: &[Point], values: &[f64], level: f64, view: &View) -> (Vec<Pixel>, Vec<Pixel>) {
     let (mut above, mut line) = (Vec::new(), Vec::new());
     for (k, (place, &value)) in places.iter().zip(values).enumerate() {
         let next = (k + 1) % places.len();

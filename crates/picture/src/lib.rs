@@ -30,6 +30,8 @@ mod stage_axis;
 mod stereonet;
 mod strength;
 mod svg;
+#[cfg(feature = "searches")]
+mod sweep;
 
 use std::io;
 use std::path::Path;
@@ -56,6 +58,8 @@ pub use stage_axis::StageStart;
 #[cfg(feature = "searches")]
 pub use stereonet::{Projection, Stereonet};
 pub use strength::strength_picture;
+#[cfg(feature = "searches")]
+pub use sweep::{Bars, Curve, Grid, bars_picture, curve_picture, grid_picture};
 
 /// A finished picture.
 #[derive(Debug, Clone, PartialEq)]

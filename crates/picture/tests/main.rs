@@ -3,3 +3,4 @@
 mod pictures;
 mod sample;
 mod stereonet;
+mod sweep;

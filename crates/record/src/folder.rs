@@ -19,7 +19,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 32] = [
+const FILES: [&str; 36] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
@@ -52,6 +52,10 @@ const FILES: [&str; 32] = [
     "report_a4.pdf",
     "run.pvd",
     "summary.json",
+    "sweep.csv",
+    "sweep.json",
+    "sweep.png",
+    "sweep.svg",
 ];
 
 /// A folder of results that no other process writes to until this is dropped.
@@ -187,7 +191,7 @@ fn held(folder: &Path, lock: &mut File) -> io::Error {
 }
 
 /// Files of results that name their case.
-const RECORDS: [&str; 4] = ["bound.json", "ensemble.json", "fos.json", "summary.json"];
+const RECORDS: [&str; 5] = ["bound.json", "ensemble.json", "fos.json", "summary.json", "sweep.json"];
 /// Largest of them that is read (bytes).
 const RECORD_MAX: u64 = 256 << 20;
 

@@ -13,8 +13,9 @@ use serde_json::{Value, json};
 use super::bound::{bound_record, bracket_record, factor};
 pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
+use super::meshes::{Meshes, OnMesh};
 use enmm::engine_version;
-use enmm::model::Mechanism;
+use enmm::model::{Case, Mechanism};
 use enmm_io::files::{at_path, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_picture::{failure_picture, trials_picture};
@@ -29,6 +30,8 @@ use enmm_stability::strength_reduction::{
 };
 use enmm_stability::up_to_stage;
 
+/// Elements of a mesh over those of the one before it: sides are shorter by its root.
+const REFINEMENT: f64 = 2.0;
 /// Pictures of the trials and of the mechanism.
 const PICTURES: [&str; 2] = ["fos", "failure"];
 
@@ -51,6 +54,9 @@ pub struct FosOptions<'a> {
     pub pictures: bool,
     /// The static stage after which the slope is looked at; the last one when none is given.
     pub stage: Option<String>,
+    /// Meshes on which to look for it, the first that of the case and each finer by √2: more than one tells the error
+    /// of the mesh.
+    pub meshes: usize,
     /// Set by another thread to end the search with the trials that are done.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -67,6 +73,7 @@ impl FosOptions<'_> {
             threads: None,
             pictures: true,
             stage: None,
+            meshes: 1,
             interrupt: None,
         }
     }
@@ -142,7 +149,10 @@ pub fn fos(
 ) -> Result<Found, FosError> {
     let clock = Instant::now();
     let _held = Folder::open(&options.directory, loaded.source.inputs()).map_err(FosError::Directory)?;
-    let found = search(loaded, options, hear)?;
+    let mut found = search(loaded, options, hear)?;
+    if options.meshes > 1 && found.main().end != End::Interrupted {
+        found.meshes = Some(on_finer_meshes(loaded, options, &found, hear));
+    }
     let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
     let directory = &options.directory;
     write(directory, &record, found.main()).map_err(FosError::Output)?;
@@ -182,7 +192,61 @@ pub fn search(
         other => FosError::NoRest(other),
     })?;
     searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
-    Ok(Found { searches, which })
+    Ok(Found { searches, which, meshes: None })
+}
+
+/// Searches on finer meshes of the same geometry than that of the case, on which `found` was.
+fn on_finer_meshes(
+    loaded: &LoadedCase,
+    options: &FosOptions,
+    found: &Found,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Meshes {
+    let size = loaded.case.mesh.size;
+    let mut all = Meshes { searches: vec![on_mesh(size, found.main())], is_interrupted: false };
+    // One area for all meshes: the free rock of each differs by rounding.
+    let least_area = Some(found.which.least(found.main()));
+    for k in 1..options.meshes {
+        let size = size / libm::pow(REFINEMENT, 0.5 * k as f64);
+        let finer = LoadedCase { case: refined(&loaded.case, size), ..loaded.clone() };
+        let own = FosOptions {
+            mechanisms: MechanismOptions { least_area, count: 1 },
+            stage: options.stage.clone(),
+            directory: options.directory.clone(),
+            ..*options
+        };
+        let on = match search(&finer, &own, hear) {
+            Ok(finer) if finer.main().end == End::Interrupted => None,
+            Ok(finer) => Some(on_mesh(size, finer.main())),
+            Err(FosError::Interrupted) => None,
+            Err(error) => Some(OnMesh { size, counts: None, bracket: None, end: error.to_string() }),
+        };
+        all.is_interrupted = on.is_none();
+        all.searches.extend(on);
+        if all.is_interrupted {
+            break;
+        }
+    }
+    all
+}
+
+fn on_mesh(size: f64, reduction: &Reduction) -> OnMesh {
+    let covers = &reduction.simulation.model().covers;
+    let bracket = reduction.low.zip(reduction.high).map(|(low, high)| [low, high]);
+    OnMesh {
+        size,
+        counts: Some([covers.element_count(), covers.block_count()]),
+        bracket: bracket.filter(|_| reduction.factor().is_some() && reduction.at_most().is_none()),
+        end: end_name(&reduction.end).to_owned(),
+    }
+}
+
+/// The case on another mesh, with the blocks and the measure of failure of its own, whose defaults follow the size.
+fn refined(case: &Case, size: f64) -> Case {
+    let mut finer = case.clone();
+    finer.mesh = case.mesh.of_size(size);
+    finer.solver.failure_displacement = case.solver.failure_displacement.or(Some(case.mesh.size));
+    finer
 }
 
 fn write(directory: &Path, record: &Value, reduction: &Reduction) -> io::Result<()> {
@@ -244,6 +308,9 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
     }
     if let Some(stage) = &options.stage {
         record["stage"] = json!(stage);
+    }
+    if let Some(meshes) = &found.meshes {
+        record["meshes"] = meshes.record();
     }
     if let (Value::Object(record), Value::Object(main)) = (&mut record, main) {
         record.extend(main);

@@ -1,5 +1,6 @@
 //! Result of a search for a factor of safety.
 
+use crate::meshes::Meshes;
 use enmm_stability::strength_reduction::{End, MechanismOptions, Reduction};
 
 /// Results: one search for each mechanism, in their order.
@@ -9,6 +10,8 @@ pub struct Found {
     pub searches: Vec<Reduction>,
     /// Which of them count.
     pub which: MechanismOptions,
+    /// The factor on finer meshes, where it was asked for.
+    pub meshes: Option<Meshes>,
 }
 
 impl Found {

@@ -8,10 +8,12 @@ mod ensemble;
 pub mod fos;
 mod found;
 mod mechanism_page;
+mod meshes;
 mod model_page;
 pub mod rock_mass;
 mod run;
 mod stereonet;
+mod sweep;
 
 pub use bound::{BoundFailure, bound, bound_record, bracket, bracket_record, write_bound};
 pub use check::{check, count_of_notes};
@@ -22,11 +24,13 @@ pub use enmm_record::{
     make_place, motion, summary, verdict, vtu,
 };
 pub use ensemble::{
-    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SearchOptions, answer, columns,
-    ensemble,
+    Answer, Ask, EnsembleError, EnsembleOptions, EnsembleProgress, EnsembleResult, SampleOutput, SearchOptions, answer,
+    columns, ensemble,
 };
 pub use fos::{FosError, FosOptions, fos};
 pub use mechanism_page::{write_bound_page, write_bracket_page};
+pub use meshes::{Meshes, OnMesh};
 pub use model_page::write_model_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};
 pub use stereonet::{NetOptions, apparent, stereonet};
+pub use sweep::{Change, Crossing, Effect, Sweep, SweepKind, SweepResult, sweep};

@@ -53,6 +53,11 @@ fn a_run_tells_the_water_of_a_time_and_the_rounds_of_openings() {
     let flow = case.flow.as_mut().expect("flow");
     (flow.coupled, flow.storage) = (true, 1e-2);
     case.stages[0].convergence = Some(1e-4);
+    // An even plane, which does not slide.
+    for name in ["plane", "toe"] {
+        let law = case.joint_laws.get_mut(name).expect("a law of the example");
+        (law.aperture, law.cohesion) = (None, 200e3);
+    }
     let mut later = case.stages[0].clone();
     (later.name, later.duration) = ("later".to_owned(), 0.02);
     later.flow = Some(StageFlow::Over(FlowTime { time: 3600.0, steps: 4 }));

@@ -53,6 +53,11 @@ fn main_results(records: &Records) -> String {
     if let Some(fos) = &records.fos {
         let failing = &fos.json["failing"];
         rows.push(("Factor of safety F", factor_cell(&fos.json)));
+        rows.push((
+            "F on a mesh of 0 m, by a straight line",
+            plain(&fos.json["meshes"]["extrapolated"], "", Digits::Three).into(),
+        ));
+        rows.push(("Error of the mesh in F", plain(&fos.json["meshes"]["mesh_error"], "", Digits::Three).into()));
         rows.push(("F where corners hold", plain(&fos.json["factor_corners_hold"], "", Digits::Three).into()));
         rows.push(("F after the stage", stage_of_factor(&fos.json)));
         rows.push(("Area that fails", plain(&failing["area"], "m²", Digits::Three).into()));

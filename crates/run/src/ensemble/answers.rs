@@ -4,11 +4,10 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use enmm::engine_version;
-use enmm::model::case::EnsembleOutput;
-use enmm_ensemble::{Given, Identity, Row, Samples, Store, sample_key, work};
+use enmm_ensemble::{Given, Identity, Row, Store, Value, sample_key, work};
 use enmm_io::LoadedCase;
 
-use super::{Answer, EnsembleError, EnsembleOptions, SearchOptions, columns};
+use super::{Answer, EnsembleError, EnsembleOptions, SampleOutput, SearchOptions, columns};
 
 /// Order to a worker.
 #[derive(Debug)]
@@ -18,7 +17,7 @@ pub struct Ask {
     /// Its values, as settings of the case.
     pub settings: Vec<String>,
     /// Output to work out of it.
-    pub output: EnsembleOutput,
+    pub output: SampleOutput,
     /// Options of the search.
     pub search: SearchOptions,
 }
@@ -27,7 +26,7 @@ pub struct Ask {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnsembleProgress {
     /// The output.
-    pub output: EnsembleOutput,
+    pub output: SampleOutput,
     /// When the work began.
     pub begun: Instant,
     /// Samples that the store had then.
@@ -36,7 +35,7 @@ pub struct EnsembleProgress {
     pub done: usize,
     /// Samples of which it is wanted.
     pub wanted: usize,
-    /// Of those that are done: how many have an answer, and how many of them are below the limit.
+    /// Of those that are done: how many have a factor, and how many of them are below the limit.
     pub answered: usize,
     /// See `answered`.
     pub below: usize,
@@ -44,29 +43,30 @@ pub struct EnsembleProgress {
     pub slowest: Option<(usize, f64)>,
 }
 
+/// The values of a sample with their keys.
+pub type Values = Vec<(String, Value)>;
+
 type Worker<'a> = &'a (dyn Fn(&Ask) -> Result<Answer, String> + Sync);
 
 /// The store of an ensemble and its workers.
 pub struct Answers<'a> {
     loaded: &'a LoadedCase,
     options: &'a EnsembleOptions<'a>,
-    keys: Vec<String>,
-    rows: Vec<Vec<enmm_ensemble::Value>>,
-    settings: Vec<Vec<String>>,
+    values: Vec<Values>,
     store: Store,
     ask: Worker<'a>,
     hear: &'a mut dyn FnMut(&EnsembleProgress),
 }
 
 impl<'a> Answers<'a> {
-    /// Opens the store of the samples of a case.
+    /// Opens the store of the samples of a case, of which each has its own values.
     ///
     /// # Errors
     /// The store cannot be made or opened.
     pub fn open(
         loaded: &'a LoadedCase,
         options: &'a EnsembleOptions<'a>,
-        samples: &Samples,
+        values: Vec<Values>,
         ask: Worker<'a>,
         hear: &'a mut dyn FnMut(&EnsembleProgress),
     ) -> Result<Self, EnsembleError> {
@@ -74,14 +74,12 @@ impl<'a> Answers<'a> {
             std::fs::create_dir_all(parent).map_err(EnsembleError::Output)?;
         }
         let store = Store::open(&options.store)?;
-        let (keys, rows) = (samples.keys.clone(), samples.rows.clone());
-        let settings = (0..rows.len()).map(|k| samples.settings(k)).collect();
-        Ok(Self { loaded, options, keys, rows, settings, store, ask, hear })
+        Ok(Self { loaded, options, values, store, ask, hear })
     }
 
     /// Number of samples.
     pub fn count(&self) -> usize {
-        self.rows.len()
+        self.values.len()
     }
 
     /// One output of some samples, in their order.
@@ -91,9 +89,10 @@ impl<'a> Answers<'a> {
     pub fn find(
         &mut self,
         samples: &[usize],
-        output: EnsembleOutput,
+        output: impl Into<SampleOutput>,
         search: &SearchOptions,
     ) -> Result<Vec<Row>, EnsembleError> {
+        let output = output.into();
         let keys = self.sample_keys(samples, output, search);
         let names = columns(output);
         let mut found = keys.iter().map(|key| self.store.find(key, names)).collect::<Result<Vec<_>, _>>()?;
@@ -104,15 +103,15 @@ impl<'a> Answers<'a> {
         let timed = |i: usize| {
             let clock = Instant::now();
             let k = samples[i];
-            let ask = Ask { sample: k, settings: self.settings[k].clone(), output, search: *search };
+            let settings = self.values[k].iter().map(|(key, value)| format!("{key}={value}")).collect();
+            let ask = Ask { sample: k, settings, output, search: *search };
             (self.ask)(&ask).map(|answer| (answer, clock.elapsed().as_secs_f64()))
         };
         let (store, hear, limit) = (&self.store, &mut self.hear, self.loaded.case.ensemble.limit);
         let lost = work(&wanted, self.options.jobs, self.options.interrupt, timed, |i, (answer, seconds)| {
             let Answer::Done(row) = answer else { return Err(EnsembleError::Changed) };
             let k = samples[i];
-            let values: Vec<_> = self.keys.iter().map(String::as_str).zip(self.rows[k].iter().copied()).collect();
-            store.add(&keys[i], k, &values, &row, (seconds, engine_version()))?;
+            store.add(&keys[i], k, &self.values[k], &row, (seconds, engine_version()))?;
             progress.note(&row, limit, Some((k, seconds)));
             found[i] = Some(row);
             hear(&progress);
@@ -129,18 +128,18 @@ impl<'a> Answers<'a> {
     }
 
     /// Keys of samples in the store.
-    fn sample_keys(&self, samples: &[usize], output: EnsembleOutput, search: &SearchOptions) -> Vec<String> {
+    fn sample_keys(&self, samples: &[usize], output: SampleOutput, search: &SearchOptions) -> Vec<String> {
         let identity = Identity {
             case: self.loaded.hash.clone(),
             version: engine_version().to_owned(),
             output: output.name().to_owned(),
             options: search.given().into_iter().map(|(name, value)| (name, Given::Number(value))).collect(),
         };
-        samples.iter().map(|&k| sample_key(&identity, &self.keys, &self.rows[k])).collect()
+        samples.iter().map(|&k| sample_key(&identity, &self.values[k])).collect()
     }
 
     /// Counts what the store has; rows that are to be worked out again do not count.
-    fn begin(&self, output: EnsembleOutput, found: &[Option<Row>]) -> EnsembleProgress {
+    fn begin(&self, output: SampleOutput, found: &[Option<Row>]) -> EnsembleProgress {
         let (wanted, limit) = (found.len(), self.loaded.case.ensemble.limit);
         let begun = Instant::now();
         let mut progress =
@@ -154,7 +153,8 @@ impl<'a> Answers<'a> {
 impl EnsembleProgress {
     fn note(&mut self, row: &Row, limit: f64, took: Option<(usize, f64)>) {
         self.done += 1;
-        if let Some(output) = row.number(columns(self.output)[0]) {
+        let factor = row.number(columns(self.output)[0]).filter(|_| self.output != SampleOutput::Displacement);
+        if let Some(output) = factor {
             self.answered += 1;
             self.below += usize::from(output < limit);
         }

@@ -21,11 +21,13 @@ use enmm_stability::strength_reduction::MechanismOptions;
 use crate::fos::FosOptions;
 use enmm_record::{Folder, STORE, check_output, is_result};
 
-use answers::Answers;
+pub(crate) use answers::{Answers, Values};
 
-pub use answer::{answer, columns};
+pub(crate) use answer::{FAILS, NO_VERDICT};
+pub use answer::{SampleOutput, answer, columns};
 pub use answers::{Ask, EnsembleProgress};
 pub use record::EnsembleResult;
+pub(crate) use record::{Answered, messages, output_name, write_table};
 
 /// Samples after each of which the width of the interval is looked at.
 const BATCH: usize = 50;
@@ -156,18 +158,24 @@ pub fn ensemble(
     hear: &mut dyn FnMut(&EnsembleProgress),
 ) -> Result<EnsembleResult, EnsembleError> {
     let clock = Instant::now();
-    let inputs = loaded.source.inputs();
-    let held = Folder::open(&options.directory, inputs);
-    let _held = held.and_then(|held| check_store(options, inputs).map(|()| held)).map_err(EnsembleError::Directory)?;
+    let _held = hold(loaded, options)?;
     let located = |invalid: enmm::model::case::Invalid| loaded.source.locate(&invalid.key, &invalid.message);
     let mut samples = draw(&loaded.case).map_err(located)?;
-    let mut answers = Answers::open(loaded, options, &samples, &ask, hear)?;
+    let values = (0..samples.rows.len()).map(|k| samples.values(k)).collect();
+    let mut answers = Answers::open(loaded, options, values, &ask, hear)?;
     let rows = rows(&loaded.case.ensemble, options, &mut answers)?;
     drop(answers);
     samples.rows.truncate(rows.len());
     let result = EnsembleResult::of(loaded, samples, rows)?;
     result.write(loaded, options, clock.elapsed().as_secs_f64()).map_err(EnsembleError::Output)?;
     Ok(result)
+}
+
+/// The folder of the results, when it and the place of the store can take them.
+pub(crate) fn hold(loaded: &LoadedCase, options: &EnsembleOptions) -> Result<Folder, EnsembleError> {
+    let inputs = loaded.source.inputs();
+    let held = Folder::open(&options.directory, inputs);
+    held.and_then(|held| check_store(options, inputs).map(|()| held)).map_err(EnsembleError::Directory)
 }
 
 /// The rows of all samples, or of as many as the interval asks for.

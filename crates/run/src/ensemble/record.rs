@@ -6,26 +6,97 @@ use std::path::Path;
 
 use enmm::engine_version;
 use enmm::model::case::{Ensemble, EnsembleOutput};
-use enmm_ensemble::{Interval, Row, Samples, Value, beta, mean, quantile, spearman, standard_deviation, wilson};
+use enmm_ensemble::{Interval, Row, Samples, beta, mean, quantile, spearman, standard_deviation, wilson};
 use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{Fit, histogram_picture, three_digits};
 use serde_json::{Value as Json, json};
 
-use super::{CONFIDENCE, EnsembleError, EnsembleOptions, columns};
+use super::{CONFIDENCE, EnsembleError, EnsembleOptions, SampleOutput, columns};
 use enmm_record::input_record;
 
 /// Shares of the samples for which quantiles are given.
 const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// An output in words of readers who do not know limit analysis.
-fn output_name(output: EnsembleOutput) -> &'static str {
+pub(crate) fn output_name(output: impl Into<SampleOutput>) -> &'static str {
+    let output = match output.into() {
+        SampleOutput::Ensemble(output) => output,
+        SampleOutput::Displacement => return "largest displacement in the last stage [m]",
+    };
     match output {
         EnsembleOutput::FactorOfSafety => "factor of safety",
         EnsembleOutput::LevelTops => "factor of safety by limit analysis",
         EnsembleOutput::Associated => "upper bound of the factor of safety by limit analysis",
         EnsembleOutput::Failure => "estimate of the factor of safety",
     }
+}
+
+/// Rows of samples by whether they have an answer.
+pub(crate) struct Answered {
+    /// Places of the samples that have one.
+    pub good: Vec<usize>,
+    /// The output of each of these.
+    pub outputs: Vec<f64>,
+    /// Samples without an answer, with the reason.
+    pub failed: Vec<(usize, String)>,
+    /// Samples whose factor is above the bound of limit analysis, with the warning.
+    pub doubtful: Vec<(usize, String)>,
+}
+
+impl Answered {
+    /// By an output, at least one of which must be there.
+    pub fn of(rows: &[Row], name: &str) -> Result<Self, EnsembleError> {
+        let (mut good, mut outputs, mut failed, mut doubtful) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (k, row) in rows.iter().enumerate() {
+            match row.number(name) {
+                Some(output) => {
+                    good.push(k);
+                    outputs.push(output);
+                }
+                None if row.is_done() => failed.push((k, format!("the store has no number {name} of it"))),
+                None => failed.push((k, row.message.clone())),
+            }
+            let doubt = row.text("doubt");
+            if !doubt.is_empty() {
+                doubtful.push((k, doubt.to_owned()));
+            }
+        }
+        if good.is_empty() {
+            let message = failed.first().map_or_else(String::new, |(_, message)| message.clone());
+            return Err(EnsembleError::NoAnswer { n: rows.len(), message });
+        }
+        Ok(Self { good, outputs, failed, doubtful })
+    }
+}
+
+/// Writes a table of samples: number, values of the keys, and outputs of each.
+pub(crate) fn write_table<'a>(
+    path: &Path,
+    keys: &[String],
+    names: &[&str],
+    samples: impl Iterator<Item = (usize, Vec<String>, &'a Row)>,
+) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    let head = ["sample"].into_iter().chain(keys.iter().map(String::as_str)).chain(names.iter().copied());
+    csv.write_record(head).map_err(io::Error::from).map_err(at_path(path))?;
+    let text = |value: Option<&Json>| match value {
+        None | Some(Json::Null) => String::new(),
+        Some(Json::String(text)) => text.clone(),
+        Some(value) => value.to_string(),
+    };
+    for (k, values, row) in samples {
+        let outputs = names.iter().map(|name| text(row.output(name)));
+        let record = [k.to_string()].into_iter().chain(values).chain(outputs);
+        csv.write_record(record).map_err(io::Error::from).map_err(at_path(path))?;
+    }
+    let bytes = csv.into_inner().map_err(|error| error.into_error()).map_err(at_path(path))?;
+    write_atomic(path, &bytes)
+}
+
+/// A list of samples with a message each, for records.
+pub(crate) fn messages(list: &[(usize, String)]) -> Vec<Json> {
+    list.iter().map(|(k, message)| json!({ "sample": k, "message": message })).collect()
 }
 
 /// The samples that have an answer, and what follows from them.
@@ -50,26 +121,7 @@ pub struct EnsembleResult {
 impl EnsembleResult {
     pub(super) fn of(loaded: &LoadedCase, samples: Samples, rows: Vec<Row>) -> Result<Self, EnsembleError> {
         let ensemble = loaded.case.ensemble.clone();
-        let name = columns(ensemble.output)[0];
-        let (mut good, mut outputs, mut failed, mut doubtful) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (k, row) in rows.iter().enumerate() {
-            match row.number(name) {
-                Some(output) => {
-                    good.push(k);
-                    outputs.push(output);
-                }
-                None if row.is_done() => failed.push((k, format!("the store has no number {name} of it"))),
-                None => failed.push((k, row.message.clone())),
-            }
-            let doubt = row.text("doubt");
-            if !doubt.is_empty() {
-                doubtful.push((k, doubt.to_owned()));
-            }
-        }
-        if good.is_empty() {
-            let message = failed.first().map_or_else(String::new, |(_, message)| message.clone());
-            return Err(EnsembleError::NoAnswer { n: rows.len(), message });
-        }
+        let Answered { good, outputs, failed, doubtful } = Answered::of(&rows, columns(ensemble.output)[0])?;
         Ok(Self { samples, rows, ensemble, good, outputs, failed, doubtful })
     }
 
@@ -116,13 +168,9 @@ impl EnsembleResult {
 
     /// Spearman's rank correlation of the output with each value but seeds, whose numbers have no order.
     pub fn sensitivity(&self) -> Vec<(String, Option<f64>)> {
-        let number = |k: usize, i: usize| match self.samples.rows[k][i] {
-            Value::Number(number) => number,
-            Value::Seed(seed) => seed as f64,
-        };
         let ordered = self.samples.keys.iter().enumerate().filter(|(i, _)| !self.samples.seeds[*i]);
         let correlation = |i: usize| {
-            let given: Vec<f64> = self.good.iter().map(|&k| number(k, i)).collect();
+            let given: Vec<f64> = self.good.iter().map(|&k| self.samples.rows[k][i].number()).collect();
             spearman(&given, &self.outputs)
         };
         ordered.map(|(i, key)| (key.clone(), correlation(i))).collect()
@@ -131,7 +179,10 @@ impl EnsembleResult {
     /// Writes all results; `ensemble.json` last, so that it is there when all others are.
     pub(super) fn write(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> io::Result<()> {
         let directory = &options.directory;
-        self.write_table(&directory.join("ensemble.csv"))?;
+        let values = |k: usize| self.samples.rows[k].iter().map(ToString::to_string).collect();
+        let rows = self.good.iter().map(|&k| (k, values(k), &self.rows[k]));
+        let names = columns(self.ensemble.output);
+        write_table(&directory.join("ensemble.csv"), &self.samples.keys, names, rows)?;
         let Interval { low, high } = self.interval();
         let percent = |share: f64| format!("{} %", three_digits(100.0 * share));
         let beta = match beta(self.probability_of_failure()) {
@@ -158,33 +209,8 @@ impl EnsembleResult {
         write_atomic(&path, &text)
     }
 
-    /// A row for each sample that has an answer: its number, its values, its outputs.
-    fn write_table(&self, path: &Path) -> io::Result<()> {
-        let names = columns(self.ensemble.output);
-        let mut csv = csv::Writer::from_writer(Vec::new());
-        let keys = self.samples.keys.iter().map(String::as_str);
-        let head = ["sample"].into_iter().chain(keys).chain(names.iter().copied());
-        csv.write_record(head).map_err(io::Error::from).map_err(at_path(path))?;
-        let text = |value: Option<&Json>| match value {
-            None | Some(Json::Null) => String::new(),
-            Some(Json::String(text)) => text.clone(),
-            Some(value) => value.to_string(),
-        };
-        for &k in &self.good {
-            let values = self.samples.rows[k].iter().map(ToString::to_string);
-            let outputs = names.iter().map(|name| text(self.rows[k].output(name)));
-            let row = [k.to_string()].into_iter().chain(values).chain(outputs);
-            csv.write_record(row).map_err(io::Error::from).map_err(at_path(path))?;
-        }
-        let bytes = csv.into_inner().map_err(|error| error.into_error()).map_err(at_path(path))?;
-        write_atomic(path, &bytes)
-    }
-
     fn record(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> Json {
         let Interval { low, high } = self.interval();
-        let listed = |list: &[(usize, String)]| -> Vec<Json> {
-            list.iter().map(|(k, message)| json!({ "sample": k, "message": message })).collect()
-        };
         let given: Vec<Json> = loaded.case.random.iter().map(|row| json!(row)).collect();
         json!({
             "title": loaded.case.title,
@@ -198,8 +224,8 @@ impl EnsembleResult {
             "random": given,
             "random_correlation": loaded.case.random_correlations,
             "samples": self.rows.len(),
-            "without_answer": listed(&self.failed),
-            "doubtful": listed(&self.doubtful),
+            "without_answer": messages(&self.failed),
+            "doubtful": messages(&self.doubtful),
             "failures": self.failures(),
             "probability_of_failure": self.probability_of_failure(),
             "interval": [low, high],

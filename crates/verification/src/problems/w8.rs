@@ -11,8 +11,9 @@ pub const PROBLEM: Problem = Problem {
     id: "W8",
     title: "Plane slide over water that flows",
     source: "between the crack, with the head h over the toe, and the toe an aperture that goes linearly from e_c to \
-             e_t has the uplift γA(h·e_c/(e_c + e_t) − y/2), y the height of the foot of the crack; with it the formula \
-             of E. Hoek and J. W. Bray. Catches heads of another place, films that press, and factors with other water",
+             e_t has the uplift γA(h·e_c/(e_c + e_t) − y/2), y the height of the foot of the crack; with it the \
+             formula of E. Hoek and J. W. Bray. Catches heads of another place, films that press, and factors with \
+             other water",
     parameters: &[
         Parameter::new("height", "m", 30.0, [5.0, 500.0], "height of the slope"),
         Parameter::new("crack", "m", 7.0, [0.1, 200.0], "depth of the tension crack"),

@@ -197,9 +197,9 @@ pub extern "C" fn enmm_jump(model: *mut enmm_model) -> enmm_status {
     })
 }
 
-/// Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block, the port,
-/// the head, the rain or the drain where it has one, `mode` a value of enmm_interpolation. Acts from the next step on,
-/// and is part of saved states. enmm_set_interpolation sets that of all inputs.
+/// Sets how one input varies within a communication step: `input` is a value of enmm_input, `index` the block, port,
+/// head, rain or drain where it has one, `mode` a value of enmm_interpolation. Acts from the next step on, and is part
+/// of saved states. enmm_set_interpolation sets that of all inputs.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for another number, or an index that does not exist.
 #[unsafe(no_mangle)]
