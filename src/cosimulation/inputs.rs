@@ -53,8 +53,7 @@ impl Cosimulation {
     }
 
     /// Sets the level (m) of a `[[head]]`, by its place in the case. It acts wherever the flow in the joints is found:
-    /// at the start of static stages, and in dynamic ones with `flow = "steady"` or
-    /// `"transient"`.
+    /// at the start of static stages, and in dynamic ones with `flow = "steady"` or `"transient"`.
     ///
     /// # Errors
     /// A value that is not finite or too large, a head that does not exist, or flow that is held from now on.
