@@ -102,6 +102,30 @@ fn the_record_has_a_row_on_each_line() {
     assert_eq!(text.lines().filter(|line| line.contains("\"computed\":")).count(), rows);
 }
 
+/// The table of `docs/book/trust.md`: mechanism, problem, value, exact value with its source, difference.
+#[test]
+fn the_page_on_trust_quotes_the_report() {
+    let page = std::fs::read_to_string(docs().join("book/trust.md")).expect("the page");
+    let record = committed();
+    let mut quoted = 0;
+    for line in page.lines() {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let [_, id, value, exact, difference] = cells[..] else { continue };
+        let Some(problem) = record.problem(id) else { continue };
+        let exact = exact.split(',').next().unwrap_or_default();
+        let quotes = |row: &RowRecord| {
+            let [Some(computed), Some(of_row), Some(error)] = [row.computed, row.exact, row.error] else {
+                return false;
+            };
+            let error = format!("{:.2} %", 100.0 * error);
+            (format!("{computed:.4}"), format!("{of_row:.4}"), error) == (value.into(), exact.into(), difference.into())
+        };
+        assert!(problem.rows.iter().any(quotes), "{line}");
+        quoted += 1;
+    }
+    assert_eq!(quoted, 13, "rows of the table");
+}
+
 #[test]
 fn the_quick_set_gives_what_the_report_states() {
     let (record, now) = (committed(), solve(true, &[]));
