@@ -518,7 +518,7 @@ def test_the_import_takes_numpy_alone(package):
 def test_the_wheel_holds_library_and_program_for_its_platform(wheel):
     assert wheel.name.startswith("enmm-") and "-py3-none-" in wheel.name and not wheel.name.endswith("-any.whl")
     # By the profile of tests; `cargo xtask wheel` holds the limit of 15 MB for the one that is shipped.
-    assert wheel.stat().st_size < 19e6
+    assert wheel.stat().st_size < 20e6
     names = zipfile.ZipFile(wheel).namelist()
     assert sum("libenmm." in name or "enmm.dll" in name for name in names) == 1
     assert sum("/scripts/enmm" in name for name in names) == 1
