@@ -1,7 +1,7 @@
 //! Claim: a run that is continued from a checkpoint has the same state to the bit as one that was never stopped, for
 //! any number of threads; a checkpoint that is not whole, or not of this case and version, is refused.
 
-use crate::common::simulation;
+use crate::common::{simulation, through_bytes};
 use enmm::model::bytes::{BytesError, Keeper, decode, decode_state, encode};
 use enmm::model::{Simulation, State};
 use enmm_io::checkpoint::{CheckpointError, read, save};
@@ -37,15 +37,7 @@ fn run(threads: usize, stopped: bool) -> State {
     pool.install(|| {
         let mut one = simulation(SLOPE);
         assert!(one.model().covers.cover_count() > 3000, "{}", one.model().covers.cover_count());
-        let through = |simulation: Simulation| {
-            if !stopped {
-                return simulation;
-            }
-            let bytes = encode(Keeper::Model, simulation.state(), "hash").expect("bytes");
-            let mut other = self::simulation(SLOPE);
-            other.restore(decode(Keeper::Model, &bytes, "hash").expect("a state"));
-            other
-        };
+        let through = |one: Simulation| if stopped { through_bytes(&one, SLOPE) } else { one };
         advance(&mut one, 33);
         one = through(one);
         advance(&mut one, 20);

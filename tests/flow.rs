@@ -4,10 +4,10 @@
 
 use allocation_counter::measure;
 
-use crate::common::{case, refusal, run_stage, simulation, step};
+use crate::common::{case, refusal, run_stage, simulation, step, through_bytes};
 use enmm::cosimulation::Cosimulation;
 use enmm::geometry::Vector;
-use enmm::model::bytes::{Keeper, decode, encode};
+use enmm::model::bytes::{Keeper, encode};
 use enmm::model::{FlowBalance, Seepage, Simulation, State};
 
 /// A slope over a bench with four joints that cross, and water on its left.
@@ -147,17 +147,7 @@ fn run(threads: usize, stopped: bool) -> State {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| {
         let mut one = simulation(&text);
-        let through = |simulation: Simulation| {
-            if !stopped {
-                return simulation;
-            }
-            let bytes = encode(Keeper::Model, simulation.state(), "hash").expect("bytes");
-            let mut other = self::simulation(&text);
-            let state: State = decode(Keeper::Model, &bytes, "hash").expect("a state");
-            other.check(&state).expect("a state of this model");
-            other.restore(state);
-            other
-        };
+        let through = |one: Simulation| if stopped { through_bytes(&one, &text) } else { one };
         step(&mut one, 60);
         one = through(one);
         let held = flowing(&one).unknowns.clone();

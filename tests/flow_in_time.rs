@@ -3,8 +3,8 @@
 //! excavations too. What enters has left or is in the joints, and states are the same to the bit by any number of
 //! threads, through bytes and after a return.
 
-use crate::common::{refusal, run_stage, simulation, step};
-use enmm::model::bytes::{Keeper, decode, encode};
+use crate::common::{refusal, run_stage, simulation, step, through_bytes};
+use enmm::model::bytes::{Keeper, encode};
 use enmm::model::{FlowBalance, Seepage, Simulation, StageWater, State};
 
 /// Transmissivity (m²/s) of joints of 0.1 mm: γe³/12μ.
@@ -238,17 +238,7 @@ fn run(threads: usize, stopped: bool) -> State {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| {
         let mut one = simulation(&text);
-        let through = |simulation: Simulation| {
-            if !stopped {
-                return simulation;
-            }
-            let bytes = encode(Keeper::Model, simulation.state(), "hash").expect("bytes");
-            let mut other = self::simulation(&text);
-            let state: State = decode(Keeper::Model, &bytes, "hash").expect("a state");
-            other.check(&state).expect("a state of this model");
-            other.restore(state);
-            other
-        };
+        let through = |one: Simulation| if stopped { through_bytes(&one, &text) } else { one };
         step(&mut one, 40);
         one = through(one);
         let before = one.state().clone();

@@ -17,8 +17,9 @@ pub mod random;
 
 use std::path::{Path, PathBuf};
 
+use enmm::model::bytes::{Keeper, decode, encode};
 use enmm::model::tables::DetectionRule;
-use enmm::model::{Case, Simulation, StepReport};
+use enmm::model::{Case, Simulation, State, StepReport};
 
 /// Root of the repository, from the tests of any crate.
 pub fn root() -> &'static Path {
@@ -45,6 +46,16 @@ pub fn case(text: &str) -> Case {
 /// Builds a simulation from the text of a case.
 pub fn simulation(text: &str) -> Simulation {
     Simulation::new(case(text)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A model of the same text with the state of a simulation, which has gone through bytes and been checked.
+pub fn through_bytes(simulation: &Simulation, text: &str) -> Simulation {
+    let bytes = encode(Keeper::Model, simulation.state(), "hash").expect("bytes");
+    let mut other = self::simulation(text);
+    let state: State = decode(Keeper::Model, &bytes, "hash").expect("a state");
+    other.check(&state).expect("a state of this model");
+    other.restore(state);
+    other
 }
 
 /// The error of a case that cannot be read or built.

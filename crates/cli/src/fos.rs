@@ -54,7 +54,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     mechanisms: u16,
     /// Meshes to look for it on, with the same geometry: that of the case, and each finer by √2 than the one before.
-    /// More than one tells the error of the mesh.
+    /// More than one gives the error of the mesh.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10))]
     meshes: u16,
     /// Threads; default: all. Results do not depend on it.
@@ -261,7 +261,7 @@ fn chips(found: &Found) -> Option<String> {
         .then(|| format!("\n{:<20} slope {}; {}\n", "altogether", factor(found.main()), chips.join(", ")))
 }
 
-/// The factor on each mesh, and what they tell of the error of that of the case.
+/// The factor on each mesh, and the error of that of the case.
 fn meshes(found: &Found) -> Option<String> {
     let meshes = found.meshes.as_ref()?;
     let mut lines =

@@ -25,11 +25,11 @@ const SCRIPTS: [&str; 8] = [
     include_str!("../viewer/viewer.js"),
 ];
 
-/// The script of films that tell of blocks which have broken, behind the others.
+/// The script of films with blocks that have broken, behind the others.
 const BREAKS: &str = include_str!("../viewer/breaks.js");
 /// How a note of such a block begins.
 const BREAK: &[u8] = br#"{"note":"break""#;
-/// The script of films that tell of water which flows in joints, behind the others.
+/// The script of films with water that flows in joints, behind the others.
 const FLOW: &str = include_str!("../viewer/flow.js");
 /// How a note of such water begins.
 const WATER: &[u8] = br#"{"note":"water""#;

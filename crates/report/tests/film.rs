@@ -224,7 +224,7 @@ fn frames_after_a_break_have_the_blocks_of_their_own_outlines() {
     read_back(&path, &[(&whole, &[0.0, 0.1])]);
 }
 
-/// The script of breaks comes with films that tell of one, and no other page grows by it.
+/// The script of breaks comes with films that have one, and no other page grows by it.
 #[test]
 fn a_page_lists_breaks_where_its_film_tells_of_some() {
     let (folder, slope) = (tempdir().unwrap(), Slope::new(2, 2));

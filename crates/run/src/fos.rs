@@ -54,7 +54,7 @@ pub struct FosOptions<'a> {
     pub pictures: bool,
     /// The static stage after which the slope is looked at; the last one when none is given.
     pub stage: Option<String>,
-    /// Meshes on which to look for it, the first that of the case and each finer by √2: more than one tells the error
+    /// Meshes on which to look for it, the first that of the case and each finer by √2: more than one gives the error
     /// of the mesh.
     pub meshes: usize,
     /// Set by another thread to end the search with the trials that are done.

@@ -1,4 +1,4 @@
-//! Factors of safety on finer meshes of the same geometry, and what they tell of the error of the mesh.
+//! Factors of safety on finer meshes of the same geometry, and the error of the mesh by them.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Claims: `enmm check` tells what is doubtful about water that flows in joints before a run, and how well and how fast
+//! Claims: `enmm check` names what is doubtful about water that flows in joints before a run, and how well and how fast
 //! joints conduct it.
 
 use enmm::model::Simulation;
