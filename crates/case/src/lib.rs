@@ -35,6 +35,7 @@ mod stage;
 pub mod text;
 mod validate;
 mod water;
+mod weakness;
 
 use std::collections::BTreeMap;
 
@@ -71,6 +72,7 @@ pub use rock::{Plane, Rock};
 pub use solver::{CornerContacts, Integrator, Newmark, Solver};
 pub use stage::{LawChange, LawSwitch, Stage, StageCut, StageKind};
 pub use water::{Water, WaterSurface};
+pub use weakness::PlaneOfWeakness;
 
 /// A closed or open list of points (m).
 pub type PointList = Vec<[f64; 2]>;

@@ -8,14 +8,15 @@ use crate::keys::{Rule, unit};
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{
     Bolt, BoltPattern, Case, Drain, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh,
-    Output, Port, Rain, RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
+    Output, PlaneOfWeakness, Port, Rain, RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
 };
 
 /// Tables whose keys have usual values, by their place in a case: without the numbers of lists, and with `*` for names.
-const TABLES: [(&str, &[Rule]); 19] = [
+const TABLES: [(&str, &[Rule]); 20] = [
     ("rock.*", Rock::KEYS),
     ("rock.*.hoek_brown", HoekBrown::KEYS),
     ("rock.*.fracture", RockFracture::KEYS),
+    ("rock.*.plane_of_weakness", PlaneOfWeakness::KEYS),
     ("in_situ", InSitu::KEYS),
     ("joint_law.*", JointLaw::KEYS),
     ("stage", Stage::KEYS),

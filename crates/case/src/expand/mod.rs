@@ -9,6 +9,7 @@ mod in_situ;
 mod joint_sets;
 pub mod motions;
 mod tessellation;
+mod weakness;
 
 pub use cuts::LAW as CUT_LAW;
 
@@ -39,6 +40,7 @@ impl Case {
         joint_sets::expand(self, &mut told)?;
         tessellation::expand(self, &mut told)?;
         cuts::expand(self, &mut told)?;
+        weakness::expand(self)?;
         in_situ::expand(self)?;
         bolts::expand(self, &mut told)?;
         motions::expand(self)?;
@@ -80,6 +82,7 @@ impl Case {
         let stress = |s: &InSitu| s.k0.is_some() || s.sxx.is_none() || s.syy.is_none() || s.y_reference.is_none();
         let short = [
             ("stage", self.stages.iter().any(|stage| stage.duration_max.is_some())),
+            ("rock", self.rocks.values().any(|rock| rock.plane_of_weakness.as_ref().is_some_and(weakness::is_short))),
             ("joint_set", self.joint_sets.iter().any(unfinished)),
             ("tessellation", !self.tessellations.is_empty()),
             ("cut", !self.cuts.is_empty()),

@@ -48,7 +48,7 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     // No element takes part, so that none yields, and no doubt about elements that yield has a place.
     for rock in case.rocks.values_mut() {
         (rock.friction_deg, rock.cohesion, rock.hoek_brown) = (None, None, None);
-        (rock.dilation_deg, rock.tension) = (None, None);
+        (rock.dilation_deg, rock.tension, rock.plane_of_weakness) = (None, None, None);
     }
     let mut simulation = Simulation::new(case)?;
     while simulation.next_stage()? {}
@@ -128,13 +128,19 @@ fn refuse_curves(case: &Case) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// What acts on a point or on a whole block, in rock that yields: no stress that is finite carries it.
+/// Rock that yields under plane stress or along planes, and what acts there on a point or on a whole block: no stress
+/// that is finite carries it.
 fn refuse_points(case: &Case) -> Result<(), Invalid> {
     let root = Key::root();
     for (name, rock) in &case.rocks {
         if rock.plane == Plane::Stress {
             let message = "is \"stress\", but limit analysis takes rock that yields in plane strain: use \"strain\"";
             return Err(refused(root.field("rock").field(name).field("plane"), message));
+        }
+        if rock.plane_of_weakness.is_some() {
+            let message = "is given, but limit analysis takes rock that is as strong in all directions: use \
+                           `enmm fos`, or leave it out";
+            return Err(refused(root.field("rock").field(name).field("plane_of_weakness"), message));
         }
     }
     for (k, fix) in case.fixes.iter().enumerate() {
