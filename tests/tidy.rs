@@ -10,7 +10,7 @@ use std::path::Path;
 const ROOMS: [(&str, usize); 12] = [
     ("geometry", 3450),
     ("cover", 1300),
-    ("rock", 1400),
+    ("rock", 1800),
     ("mechanics", 2900),
     ("contact", 7800),
     ("flow", 700),
@@ -18,7 +18,7 @@ const ROOMS: [(&str, usize); 12] = [
     ("step", 3550),
     ("fracture", 1260),
     ("recut", 1150),
-    ("model", 8000),
+    ("model", 8300),
     ("cosimulation", 2_900),
 ];
 const COLUMNS_MAX: usize = 120;

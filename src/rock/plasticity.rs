@@ -361,10 +361,12 @@ impl YieldSurface {
     pub fn flow(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
         let Some(plane) = &self.weak else { return self.flow_between_planes(trial) };
         let (elasticity, plane_stress) = (&self.elasticity, self.plane_stress);
-        let most = Principal::of(trial, plane_stress).sorted.iter().fold(self.least, |most, s| most.max(s.abs()));
         let rock = |trial: &[f64; 4]| self.flow_between_planes(*trial);
         let relief = |flow: &PlasticStrain| relief(elasticity, plane_stress, flow);
-        Both { plane, elasticity, plane_stress, rock, relief, tolerance: ON_SURFACE * most }.flow(&trial)
+        let greatest = |stress: &[f64; 4]| Principal::of(*stress, plane_stress).sorted.map(f64::abs);
+        let tolerance = |stress: &[f64; 4]| ON_SURFACE * greatest(stress).into_iter().fold(self.least, f64::max);
+        let (rock, relief, tolerance) = (&rock, &relief, &tolerance);
+        Both { plane, elasticity, plane_stress, rock, relief, tolerance }.flow(&trial)
     }
 
     /// The same for the rock between its planes of weakness.

@@ -115,7 +115,7 @@ impl WeakPlane {
 }
 
 /// A trial stress (Pa) beyond the surface of the rock, that of the plane, or both.
-pub struct Both<'a, R: Fn(&[f64; 4]) -> Option<PlasticStrain>, S: Fn(&PlasticStrain) -> [f64; 4]> {
+pub struct Both<'a> {
     /// The plane.
     pub plane: &'a WeakPlane,
     /// Elastic constants in the plane of the section.
@@ -123,16 +123,16 @@ pub struct Both<'a, R: Fn(&[f64; 4]) -> Option<PlasticStrain>, S: Fn(&PlasticStr
     /// Whether there is no stress out of the plane.
     pub plane_stress: bool,
     /// Plastic strain that brings a stress back to the surface of the rock; none inside.
-    pub rock: R,
+    pub rock: &'a dyn Fn(&[f64; 4]) -> Option<PlasticStrain>,
     /// Stress (Pa) that a plastic strain takes off.
-    pub relief: S,
-    /// Stress (Pa) beyond the plane's strength that still counts as on it.
-    pub tolerance: f64,
+    pub relief: &'a dyn Fn(&PlasticStrain) -> [f64; 4],
+    /// Stress (Pa) beyond the plane's strength that still counts as on it, by the stress.
+    pub tolerance: &'a dyn Fn(&[f64; 4]) -> f64,
 }
 
-impl<R: Fn(&[f64; 4]) -> Option<PlasticStrain>, S: Fn(&PlasticStrain) -> [f64; 4]> Both<'_, R, S> {
+impl Both<'_> {
     fn of_plane(&self, stress: &[f64; 4]) -> Option<PlasticStrain> {
-        self.plane.flow(self.elasticity, stress, self.tolerance)
+        self.plane.flow(self.elasticity, stress, (self.tolerance)(stress))
     }
 
     fn less(&self, stress: &[f64; 4], flow: &PlasticStrain) -> [f64; 4] {
@@ -149,14 +149,14 @@ impl<R: Fn(&[f64; 4]) -> Option<PlasticStrain>, S: Fn(&PlasticStrain) -> [f64; 4
         }
         let mut plane = if rock.is_none() { plane.unwrap_or_default() } else { [0.0; 4] };
         let mut rock = [0.0; 4];
-        let mut changes = Changes::default();
+        let (agreed, mut changes) = (AGREED * (self.tolerance)(trial), Changes::default());
         for _ in 0..ROUNDS_MAX {
             rock = (self.rock)(&self.less(trial, &plane)).unwrap_or_default();
             let next = self.of_plane(&self.less(trial, &rock)).unwrap_or_default();
             let change = [0, 1, 2, 3].map(|k| next[k] - plane[k]);
             let moved = (self.relief)(&change).iter().fold(0.0f64, |most, stress| most.max(stress.abs()));
             plane = next;
-            if moved <= AGREED * self.tolerance {
+            if moved <= agreed {
                 break;
             }
             plane = changes.ahead(plane, change);
