@@ -11,6 +11,7 @@ mod constants;
 mod facing;
 mod found;
 mod frame;
+mod grout;
 mod law;
 mod narrow_phase;
 mod pair;
@@ -22,6 +23,7 @@ mod vertex_edge;
 mod vertex_rule;
 
 pub use bolt::{BoltCondition, BoltRow, BoltSegment, BoltState, BoltView};
+pub use grout::{Grout, GroutBuffers};
 pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use climb::Slide;

@@ -212,6 +212,7 @@ fn model(
         element_rock,
         covers,
     };
+    bolts::check_step(case, &model)?;
     Ok((model, bolt_warnings))
 }
 

@@ -93,6 +93,9 @@ fn bar(pattern: &BoltPattern) -> Bolt {
         rupture_strain: pattern.rupture_strain,
         pretension: pattern.pretension,
         free_length: pattern.free_length,
+        bond: pattern.bond,
+        bond_stiffness: pattern.bond_stiffness,
+        plate: pattern.plate,
         support: pattern.support,
         active: pattern.active,
     }

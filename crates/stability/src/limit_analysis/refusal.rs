@@ -42,6 +42,7 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     }
     refuse_motion(&case)?;
     refuse_curves(&case)?;
+    refuse_bonds(&case)?;
     if case.yields() {
         refuse_points(&case)?;
     }
@@ -124,6 +125,16 @@ fn refuse_curves(case: &Case) -> Result<(), Invalid> {
             law.kind.name()
         );
         return Err(refused(Key::root().field("joint_law").field(name).field("kind"), message));
+    }
+    Ok(())
+}
+
+/// Bars that slip in their grout: their force follows from how far the rock moves.
+fn refuse_bonds(case: &Case) -> Result<(), Invalid> {
+    if let Some(k) = case.bolts.iter().position(|bolt| bolt.bond.is_some()) {
+        let message = "is given, but limit analysis takes bars that are fixed to the rock beside each joint: use \
+                       `enmm fos`, or leave it out and give a `yield_force` that the bond can carry";
+        return Err(refused(Key::root().field("bolt").index(k).field("bond"), message));
     }
     Ok(())
 }
