@@ -2,7 +2,7 @@
 //! checkpoints to the bit, and with a closed ledger.
 
 use crate::common::claims::{advance, assert_ledger, block_at};
-use crate::common::{refusal, run_stage, simulation};
+use crate::common::{refusal, run_stage, simulation, through_bytes};
 use enmm::model::Simulation;
 
 const G: f64 = 9.81;
@@ -255,9 +255,7 @@ fn a_bond_keeps_its_bits() {
     };
     let mut first = run(1);
     assert!(first.state() == run(2).state(), "threads change bits");
-    let saved = postcard::to_stdvec(first.state()).expect("bytes");
-    let mut second = first.clone();
-    second.restore(postcard::from_bytes(&saved).expect("a state"));
+    let mut second = through_bytes(&first, &text);
     advance(&mut first, 200);
     advance(&mut second, 200);
     assert!(first.state() == second.state());
@@ -277,4 +275,59 @@ fn a_bond_says_what_it_needs() {
         let found = refusal(&pulled(0.0, bar, SETTLE));
         assert!(found.contains(message), "{bar}: {found}");
     }
+}
+
+/// A block of 2 m × 0.8 m between two held pillars, 1 m from each, and a skin along their feet.
+fn held_by_a_skin(strength: &str, stages: &str) -> String {
+    format!(
+        "title = \"skin\"\n[domain]\noutline = [[-3, 0], [-1, 0], [-1, 1], [-3, 1]]\n\
+         islands = [[[0, 0], [2, 0], [2, 0.8], [0, 0.8]], [[3, 0], [5, 0], [5, 1], [3, 1]]]\n[mesh]\nsize = 0.5\n\
+         [joint_law.joint]\nfriction_deg = 0.0\n[rock.rock]\ndensity = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n\
+         [[fix]]\nblock = [-2, 0.5]\n[[fix]]\nblock = [4, 0.5]\n[[skin]]\nname = \"mesh\"\n\
+         line = [[-1, 0], [0, 0], [2, 0], [3, 0]]\nthickness = 0.1\nyoung = 1e7\ndistance = 10.0\n{strength}\n\
+         {stages}"
+    )
+}
+
+/// Two members that hang in a V: 2T·sin θ = W with T = EA(1/cos θ − 1), by bisection.
+fn tension_of_a_v(weight: f64, axial: f64) -> f64 {
+    let tension = |angle: f64| axial * (1.0 / angle.cos() - 1.0);
+    let (mut low, mut high) = (0.0, 1.5);
+    for _ in 0..100 {
+        let half: f64 = 0.5 * (low + high);
+        if 2.0 * tension(half) * half.sin() < weight { low = half } else { high = half }
+    }
+    tension(low)
+}
+
+/// A skin across a gap carries a loose block by its tension alone, as two bars in a V do, and breaks at its strength.
+#[test]
+fn a_skin_carries_a_block_over_a_gap_and_breaks_at_its_strength() {
+    let exact = tension_of_a_v(WEIGHT, 1e6);
+    let mut sim = simulation(&held_by_a_skin(&format!("tension = {:e}", 25.0 * exact), SETTLE));
+    let report = run_stage(&mut sim);
+    let found = forces(&sim);
+    assert_eq!(found.len(), 3);
+    assert!((found[0] / exact - 1.0).abs() < 0.01 && (found[2] / exact - 1.0).abs() < 0.01, "{found:?} {exact}");
+    assert_ledger(&report);
+    let strength = 0.8 * exact;
+    let mut sim = simulation(&held_by_a_skin(&format!("tension = {:e}", 10.0 * strength), SETTLE));
+    let mut most = 0.0f64;
+    while !sim.state().bolts[0].broken {
+        most = most.max(forces(&sim)[0]);
+        advance(&mut sim, 1);
+    }
+    assert!((most / strength - 1.0).abs() < 0.01, "{most} of {strength}");
+    assert_eq!(forces(&sim)[0], 0.0);
+}
+
+/// A stage installs all members of a skin by its name; members of one block are no mistake.
+#[test]
+fn a_stage_installs_a_skin_by_its_name() {
+    let stage = "[[stage]]\nname = \"spray\"\nkind = \"dynamic\"\nduration = 1.0\ninstall = [\"mesh\"]\n";
+    let sim = simulation(&held_by_a_skin("active = false", stage));
+    let names: Vec<_> = sim.case().bolts.iter().filter_map(|bolt| bolt.name.clone()).collect();
+    assert_eq!(names, ["mesh_1", "mesh_2", "mesh_3"]);
+    assert!(sim.state().bolts.iter().all(|bar| bar.active), "{:?}", sim.state().bolts);
+    assert!(sim.built().warnings.iter().all(|text| !text.contains("holds nothing")), "{:?}", sim.built().warnings);
 }

@@ -164,8 +164,7 @@ fn between_plates(simulation: &mut Simulation, lateral: f64, step: f64, count: i
             ([stress[0] - lateral, stress[2]], stress)
         };
         for _ in 0..40 {
-            let ([a, b], now) = at(free);
-            stress = now;
+            let ([a, b], _) = at(free);
             if a.abs().max(b.abs()) < 1e-6 * COHESION {
                 break;
             }

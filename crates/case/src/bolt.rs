@@ -123,6 +123,9 @@ keys! {
         /// Whether it is there from the start; else a stage installs it by name.
         #[serde(default = "crate::keys::yes")]
         pub active: bool,
+        /// Whether it is a member of a skin.
+        #[serde(skip)]
+        pub of_skin: bool,
     }
 }
 

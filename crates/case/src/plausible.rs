@@ -8,11 +8,11 @@ use crate::keys::{Rule, unit};
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{
     Bolt, BoltPattern, Case, Drain, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh,
-    Output, PlaneOfWeakness, Port, Rain, RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
+    Output, PlaneOfWeakness, Port, Rain, RandomOf, Rock, RockFracture, Skin, Stage, Tessellation, Water,
 };
 
 /// Tables whose keys have usual values, by their place in a case: without the numbers of lists, and with `*` for names.
-const TABLES: [(&str, &[Rule]); 20] = [
+const TABLES: [(&str, &[Rule]); 21] = [
     ("rock.*", Rock::KEYS),
     ("rock.*.hoek_brown", HoekBrown::KEYS),
     ("rock.*.fracture", RockFracture::KEYS),
@@ -23,6 +23,7 @@ const TABLES: [(&str, &[Rule]); 20] = [
     ("stage.law", LawChange::KEYS),
     ("bolt", Bolt::KEYS),
     ("bolt_pattern", BoltPattern::KEYS),
+    ("skin", Skin::KEYS),
     ("joint_set", JointSet::KEYS),
     ("tessellation", Tessellation::KEYS),
     ("mesh", Mesh::KEYS),

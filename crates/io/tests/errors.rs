@@ -23,8 +23,8 @@ fn unknown_section_names_the_nearest_known_section() {
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, \
          bridge, cut, domain, drain, ensemble, fix, flow, fmu, fracture, free_field, gravity, head, in_situ, \
          initial_velocity, joint, joint_law, joint_set, law_region, layers, load, mesh, monitor, output, port, \
-         quiet, rain, random, random_correlation, report, rock, section, solver, stage, tessellation, title, \
-         transform, water; rename or remove it",
+         quiet, rain, random, random_correlation, report, rock, section, skin, solver, stage, tessellation, \
+         title, transform, water; rename or remove it",
     );
 }
 
@@ -592,5 +592,22 @@ fn planes_of_weakness_say_their_limits() {
     for (to, message) in cases {
         let error = error_of(&edited(young, &to));
         assert!(error.contains("plane_of_weakness") && error.contains(message), "{to}: {error}");
+    }
+}
+
+/// Skins: what they need, and what does not go together.
+#[test]
+fn skins_say_their_limits() {
+    let skin = |keys: &str| format!("[[skin]]\nthickness = 0.1\nyoung = 15e9\n{keys}\n[mesh]");
+    for (keys, message) in [
+        ("line = [[0, 0]]", "skin[0].line: has 1 points, must have at least 2"),
+        ("line = [[0, 0], [0, 0]]", "skin[0].line[1]: is the same as the point before"),
+        ("line = [[0, 0], [1, 0]]\nactive = false", "skin[0].active: is false, and without a name"),
+        ("line = [[0, 0], [1, 0]]\ntension = 3e6\nrupture_strain = 1e-5", "skin[0].rupture_strain: is 0.00001"),
+        ("line = [[0, 0], [9, 0]]\ndistance = 1e-9", "skin[0].distance: gives 10001 points"),
+        ("line = [[0, 0], [1, 0]]\ntension = -1", "skin[0].tension: is -1 Pa"),
+    ] {
+        let error = error_of(&edited("[mesh]", &skin(keys)));
+        assert!(error.contains(message), "{keys}: {error}");
     }
 }

@@ -31,7 +31,7 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
         match bolt.anchorage {
             Anchorage::Ends => {
                 let block = |end: usize| positions.covers.element_block[line.elements[end]];
-                if block(0) == block(1) && line.meetings.is_empty() {
+                if block(0) == block(1) && line.meetings.is_empty() && !bolt.of_skin {
                     warnings.push(format!(
                         "{}: both ends lie in one block and the bolt crosses no joint, so that it holds nothing: move \
                          its points to both sides of a joint",

@@ -1,5 +1,5 @@
 //! Expansion of the words of the field in a case into the plain data that the engine builds: dips become angles,
-//! bolt patterns bolts, construction joints joints with a law, K0 a stress, records accelerations of the base and
+//! bolt patterns and skins bolts, construction joints joints with a law, K0 a stress, records accelerations of the base and
 //! velocities of waves. This is the only place that does so.
 
 mod bolts;
@@ -8,6 +8,7 @@ mod cuts;
 mod in_situ;
 mod joint_sets;
 pub mod motions;
+mod skins;
 mod tessellation;
 mod weakness;
 
@@ -43,6 +44,7 @@ impl Case {
         weakness::expand(self)?;
         in_situ::expand(self)?;
         bolts::expand(self, &mut told)?;
+        skins::expand(self, &mut told)?;
         motions::expand(self)?;
         Ok(told)
     }
@@ -88,6 +90,7 @@ impl Case {
             ("cut", !self.cuts.is_empty()),
             ("in_situ", self.in_situ.as_ref().is_some_and(stress)),
             ("bolt_pattern", !self.bolt_patterns.is_empty()),
+            ("skin", !self.skins.is_empty()),
             ("base_motion", self.base_motions.iter().any(motions::is_short_base)),
             ("quiet", self.quiets.iter().any(motions::is_short_wave)),
         ];
