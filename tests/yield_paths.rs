@@ -45,8 +45,9 @@ fn sheared(simulation: &mut Simulation, [xx, yy, xy]: [f64; 3], angle: f64) -> [
     let first = back(slope.stress(state, ElementId::new(0)));
     for e in slope.covers.elements() {
         let other = back(slope.stress(state, e));
-        // Rounding of displacements of 1 m over cut elements of a mesh of 0.6 m: 1e-15·E.
-        assert!((0..3).all(|k| (other[k] - first[k]).abs() < 1e-3), "{e}: {other:?} {first:?}");
+        // Rounding of displacements of 1 m over cut elements of a mesh of 0.6 m: 1e-15·E, and of greater stresses.
+        let size = first.iter().fold(COHESION, |most, stress| most.max(stress.abs()));
+        assert!((0..3).all(|k| (other[k] - first[k]).abs() < 1e-9 * size), "{e}: {other:?} {first:?}");
     }
     first
 }
@@ -173,7 +174,10 @@ fn between_plates(simulation: &mut Simulation, lateral: f64, step: f64, count: i
             let [p, q] = [(by_xx[0] - a) / small, (by_xy[0] - a) / small];
             let [r, s] = [(by_xx[1] - b) / small, (by_xy[1] - b) / small];
             let whole = p * s - q * r;
-            free = [free[0] - (s * a - q * b) / whole, free[1] - (p * b - r * a) / whole];
+            let change = [(s * a - q * b) / whole, (p * b - r * a) / whole];
+            // A round of the size of a step at most, so that it stays on the path.
+            let share = (step.abs() / change[0].abs().max(change[1].abs())).min(1.0);
+            free = [free[0] - share * change[0], free[1] - share * change[1]];
         }
         stress = at(free).1;
     }
@@ -195,7 +199,7 @@ fn planes_of_weakness_have_the_strength_of_jaeger() {
             "cohesion = {COHESION:e}\nfriction_deg = {phi}\n[rock.rock.plane_of_weakness]\nangle_deg = {dip}\n\
              friction_deg = {along}\ncohesion = {held_by:e}\n"
         ));
-        let stress = between_plates(&mut simulation, lateral, -1e-3, 14);
+        let stress = between_plates(&mut simulation, lateral, -3e-4, 40);
         let (tan, beta) = (along.to_radians().tan(), dip.to_radians());
         let slips = dip > along && dip < 90.0;
         let jaeger = -lateral + 2.0 * (held_by - lateral * tan) / ((1.0 - tan / beta.tan()) * (2.0 * beta).sin());

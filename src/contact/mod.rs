@@ -23,7 +23,6 @@ mod vertex_edge;
 mod vertex_rule;
 
 pub use bolt::{BoltCondition, BoltRow, BoltSegment, BoltState, BoltView};
-pub use grout::{Grout, GroutBuffers};
 pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use climb::Slide;
@@ -31,6 +30,7 @@ pub use constants::DetectionRule;
 pub use facing::{Facing, Facings};
 pub use found::{FoundContact, FoundContacts};
 pub use frame::Frames;
+pub use grout::{Grout, GroutBuffers};
 pub use law::{Bond, Closure, Damaged, JointLaw, LawId, LiftLoad, Lifted, Limits, Roughness, SectionBond, Softening};
 pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, find_contacts, prefiltered};
 pub use pair::Pair;

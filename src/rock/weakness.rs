@@ -93,7 +93,8 @@ impl WeakPlane {
         }
         let (stiff, mu) = (rock.lambda + 2.0 * rock.mu, rock.mu);
         let [normal, shear] = self.traction(trial);
-        let slip = (shear.abs() + normal * self.friction - self.cohesion) / (mu + stiff * self.friction * self.dilation);
+        let slip =
+            (shear.abs() + normal * self.friction - self.cohesion) / (mu + stiff * self.friction * self.dilation);
         let (left, pull) = (shear.abs() - mu * slip, normal - stiff * self.dilation * slip);
         // Strain normal to the plane and twice that along it, as a size.
         let [opens, slides] = match () {

@@ -1,8 +1,8 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, GroutBuffers, LawId, NearSides, OpenClose,
-    PenetratingContacts, SearchGrid, SectionForces, SideId, SupportRow, VertexEdge,
+    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, GroutBuffers, LawId, NearSides,
+    OpenClose, PenetratingContacts, SearchGrid, SectionForces, SideId, SupportRow, VertexEdge,
 };
 use crate::cover::{BlockId, ElementId};
 use crate::geometry::Vector;

@@ -181,8 +181,7 @@ impl<'a> Line<'a> {
         for [from, to] in self.parts() {
             let count = ((to - from) / longest).ceil().max(1.0);
             let long = (to - from) / count;
-            let grout =
-                Grout { stiffness: stiffness * long / bolt.spacing, strength: strength * long / bolt.spacing };
+            let grout = Grout { stiffness: stiffness * long / bolt.spacing, strength: strength * long / bolt.spacing };
             let middles = (0..count as usize).map(|k| from + (k as f64 + 0.5) * long);
             points.extend(middles.filter_map(|along| Some((along, self.element_at(along)?, grout))));
         }

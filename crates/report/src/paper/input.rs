@@ -1,7 +1,10 @@
 //! Input: section, rock, joints, water, loads, bolts, stages.
 
 use enmm_case::keys::Rule;
-use enmm_case::{Bolt, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, PlaneOfWeakness, Rock, RockFracture, Section, Water};
+use enmm_case::{
+    Bolt, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, PlaneOfWeakness, Rock, RockFracture, Section,
+    Water,
+};
 use serde_json::Value;
 
 use super::number::{Digits, Number, length, plain, prefixed, steel_area};
