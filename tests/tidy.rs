@@ -12,7 +12,7 @@ const ROOMS: [(&str, usize); 12] = [
     ("cover", 1300),
     ("rock", 1800),
     ("mechanics", 2900),
-    ("contact", 7800),
+    ("contact", 8100),
     ("flow", 700),
     ("state", 2400),
     ("step", 3550),

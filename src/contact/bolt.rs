@@ -33,7 +33,7 @@ pub struct BoltSegment {
     pub pretension: f64,
     /// Whether it is there from the start.
     pub active: bool,
-    /// What ties both points of the bar to those of the rock; none where both are one.
+    /// The ties of both points of the bar to those of the rock; none where both are one.
     pub grout: Option<[Grout; 2]>,
     /// Whether its first point is the second one of the segment before.
     pub follows: bool,

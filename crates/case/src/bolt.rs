@@ -106,8 +106,8 @@ keys! {
         pub pretension: f64 => PRETENSION,
         /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
         pub free_length: Option<f64> => FREE_LENGTH,
-        /// Force (N) per metre at which one grouted bar slips along the rock; default: it is fixed to the rock but for a
-        /// free length at each joint.
+        /// Force (N) per metre at which one grouted bar slips along the rock; default: it is fixed to the rock but for
+        /// a free length at each joint.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub bond: Option<f64> => BOND,
         /// Force per metre over the slip (N/m per metre) of one bar with a `bond`.
@@ -184,8 +184,8 @@ keys! {
         pub pretension: f64 => PRETENSION,
         /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
         pub free_length: Option<f64> => FREE_LENGTH,
-        /// Force (N) per metre at which one grouted bar slips along the rock; default: it is fixed to the rock but for a
-        /// free length at each joint.
+        /// Force (N) per metre at which one grouted bar slips along the rock; default: it is fixed to the rock but for
+        /// a free length at each joint.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub bond: Option<f64> => BOND,
         /// Force per metre over the slip (N/m per metre) of one bar with a `bond`.

@@ -16,8 +16,8 @@ pub fn has_bonds(simulation: &Simulation) -> bool {
     simulation.case().bolts.iter().any(|bolt| bolt.bond.is_some())
 }
 
-/// Writes the segments of all such bars: the number and name of the bolt, the middle of the segment from the head and in
-/// the reference configuration, the tension of one bar, its slip along the rock towards the far end, and its state;
+/// Writes the segments of all such bars: the number and name of the bolt, the middle of the segment from the head and
+/// in the reference configuration, the tension of one bar, its slip along the rock towards the far end, and its state;
 /// digits read back to the same numbers.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! Expansion of the words of the field in a case into the plain data that the engine builds: dips become angles,
-//! bolt patterns and skins bolts, construction joints joints with a law, K0 a stress, records accelerations of the base and
-//! velocities of waves. This is the only place that does so.
+//! bolt patterns and skins bolts, construction joints joints with a law, K0 a stress, records accelerations of the base
+//! and velocities of waves. This is the only place that does so.
 
 mod bolts;
 mod cells;
