@@ -33,7 +33,7 @@ const FLOORS: [&[&str]; 9] = [
     &["enmm"],
     &["enmm-implicit", "enmm-io", "enmm-observe", "enmm-stability", "enmm-ensemble"],
     &["enmm-picture", "enmm-report"],
-    &["enmm-record"],
+    &["enmm-export", "enmm-record"],
     &["enmm-run", "enmm-capi", "enmm-fmi"],
     &["enmm-verification", "enmm-fmu"],
     &["enmm-cli"],
