@@ -4,6 +4,7 @@ mod bad_input;
 mod bench;
 mod bound;
 mod edit;
+mod export;
 #[path = "../../../tests/common/extent.rs"]
 mod extent;
 mod fmu;

@@ -2,16 +2,16 @@
 //!
 //! | layer | entities |
 //! |---|---|
-//! | `rock_NAME` | outer loops of the blocks of a rock, closed polylines |
-//! | `largest_block` | that of the largest block, of any rock |
-//! | `holes` | inner loops of blocks |
+//! | `rock_NAME` | loops of the blocks of a rock, closed polylines |
+//! | `outline` | free faces, which no joint makes, polylines: those of all blocks are the outline |
+//! | `island`, `hole` | loops of blocks that are free all round, beside the outline and within blocks |
 //! | `joint_LAW` | pieces of joints, lines |
 //! | `touch_LAW` | boundaries that another block has come to touch |
 //! | `bolts`, `supports`, `water`, `flow` | lines, points, a polyline, and joints in which water flows |
 //! | `displacement` | arrows at the blocks, enlarged as a text beside them says |
 //!
-//! A case takes the blocks back by `[layers]`: `largest_block` is its outline, `rock_NAME` are islands and `holes` are
-//! holes. Reading and writing are apart: [`enmm_io`] reads drawings, of which this is one form.
+//! A case takes the slope back by its layers `outline`, `island`, `hole` and `joint_LAW`, and by a
+//! `domain.snap_tolerance` above the openings of its joints.
 
 use crate::scene::{Block, Scene};
 
@@ -22,9 +22,6 @@ const HEAD: f64 = 0.25;
 const TEXT: f64 = 0.012;
 /// Most letters of the name of a layer in release 12.
 const NAME_MAX: usize = 31;
-/// Layer of the largest block, and of inner loops.
-const LARGEST: &str = "largest_block";
-const HOLES: &str = "holes";
 
 /// The drawing of a slope.
 pub fn drawing(scene: &Scene) -> String {
@@ -59,13 +56,18 @@ struct Drawing {
 
 impl Drawing {
     fn blocks(&mut self, scene: &Scene) {
-        let largest = scene.blocks.iter().max_by(|a, b| a.outline.size[0].total_cmp(&b.outline.size[0]));
-        let largest = largest.map(|block| block.outline.id);
+        let all_free = |block: &Block| block.free.first().is_some_and(|outer| outer.iter().all(|free| *free));
+        let alone = scene.blocks.len() == 1;
         for block in &scene.blocks {
             let rock = format!("rock_{}", block.rock);
-            let layer = if Some(block.outline.id) == largest { LARGEST } else { &rock };
-            for (k, points) in block.loops.iter().enumerate() {
-                self.polyline(if k == 0 { layer } else { HOLES }, points, true);
+            block.loops.iter().for_each(|points| self.polyline(&rock, points, true));
+            for (k, (points, free)) in block.loops.iter().zip(&block.free).enumerate() {
+                if free.iter().all(|free| *free) {
+                    let outer = if all_free(block) && !alone { "island" } else { "outline" };
+                    self.polyline(if k == 0 { outer } else { "hole" }, points, true);
+                } else {
+                    free_faces(points, free).iter().for_each(|chain| self.polyline("outline", chain, false));
+                }
             }
         }
     }
@@ -82,9 +84,8 @@ impl Drawing {
     fn arrows(&mut self, scene: &Scene) {
         let Some([low, high]) = scene.bounds() else { return };
         let size = (high[0] - low[0]).max(high[1] - low[1]);
-        let displacement = |block: &Block| {
-            Some([scene.number(block, "displacement_x")?, scene.number(block, "displacement_y")?])
-        };
+        let displacement =
+            |block: &Block| Some([scene.number(block, "displacement_x")?, scene.number(block, "displacement_y")?]);
         let moves: Vec<([f64; 2], [f64; 2])> =
             scene.blocks.iter().filter_map(|block| Some((block.outline.centroid, displacement(block)?))).collect();
         let most = moves.iter().map(|(_, by)| libm::hypot(by[0], by[1])).fold(0.0, f64::max);
@@ -170,6 +171,19 @@ impl Drawing {
         head.put(&[(0, "ENDSEC"), (0, "EOF")]);
         head.entities
     }
+}
+
+/// Chains of edges of a loop that are free, of which not all are.
+fn free_faces(points: &[[f64; 2]], free: &[bool]) -> Vec<Vec<[f64; 2]>> {
+    let count = points.len();
+    let starts = (0..count).filter(|&k| free[k] && !free[(k + count - 1) % count]);
+    let chain = |start: usize| {
+        let edges = (start..start + count).take_while(|k| free[k % count]);
+        let mut chain: Vec<[f64; 2]> = edges.map(|k| points[k % count]).collect();
+        chain.push(points[(start + chain.len()) % count]);
+        chain
+    };
+    starts.map(chain).collect()
 }
 
 /// The greatest of 1, 2 and 5 times a power of ten that is not above a number.

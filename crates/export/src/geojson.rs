@@ -17,7 +17,8 @@ const STRESSES: [(&str, &str); 2] = [("mean_stress", "Pa"), ("max_shear", "Pa")]
 /// The features of a slope, as text.
 pub fn features(scene: &Scene) -> String {
     let lines = |kind: &'static str, lines: &Lines, numbers: &[(&str, &str)]| -> Vec<Value> {
-        let line = |k: usize| feature(json!("LineString"), json!(lines.ends[k]), line_properties(kind, lines, numbers, k));
+        let line =
+            |k: usize| feature(json!("LineString"), json!(lines.ends[k]), line_properties(kind, lines, numbers, k));
         (0..lines.ends.len()).map(line).collect()
     };
     let mut features: Vec<Value> = scene.blocks.iter().map(|block| block_feature(scene, block)).collect();

@@ -32,6 +32,8 @@ pub struct Block {
     pub numbers: Vec<f64>,
     /// Corners of each loop (m), the outer one first.
     pub loops: Vec<Vec<[f64; 2]>>,
+    /// Whether the edge behind each corner is a free face, which no joint makes.
+    pub free: Vec<Vec<bool>>,
 }
 
 /// A free length of a bolt now.
@@ -86,13 +88,14 @@ impl Scene {
         }
         let path = directory.join(FILM);
         if !path.exists() {
-            let message = format!("holds no {FILM}, which enmm run, fos and bound write; name the folder of one of them");
+            let message = format!("holds no {FILM}, which enmm run writes; name the directory of a run");
             return Err(ExportError::Nothing { path: directory.to_owned(), message });
         }
         let film = Film::read(&path)?;
         let collection = Collection::read(directory)?;
         let found = find(&film, collection.as_ref(), instant);
-        let (frame, number) = found.map_err(|message| ExportError::NoInstant { path: directory.to_owned(), message })?;
+        let (frame, number) =
+            found.map_err(|message| ExportError::NoInstant { path: directory.to_owned(), message })?;
         let mut scene = Self::of(&film, frame)?;
         match collection.zip(number) {
             Some((collection, number)) => {
@@ -100,9 +103,9 @@ impl Scene {
                 scene.flow = collection.part(number, "flow")?.unwrap_or_default();
             }
             None => scene.notes.push(
-                "no joints: they stand in frames/, which runs write unless `output.frames` is false, and searches do \
-                 not"
-                .to_owned(),
+                "no joints: they stand in frames/, which the case does not ask for; set `output.frames = true` and run \
+                 it again"
+                    .to_owned(),
             ),
         }
         Ok(scene)
@@ -116,11 +119,12 @@ impl Scene {
         let note = (removed > 0).then(|| format!("{removed} blocks have been excavated and are left out"));
         let rock = |outline: &Outline| text(&film.head["rocks"][outline.rock]);
         let there = film.outlines(number).iter().zip(blocks).filter(|(_, moved)| !moved.removed);
-        let block = |(outline, Moved { numbers, loops, .. }): (&Outline, Moved)| Block {
+        let block = |(outline, Moved { numbers, loops, free, .. }): (&Outline, Moved)| Block {
             outline: outline.clone(),
             rock: rock(outline),
             numbers,
             loops,
+            free,
         };
         Ok(Self {
             title: text(&film.head["title"]),
@@ -158,7 +162,8 @@ impl Scene {
 
     /// Surface of the water, level up to the ends of the slope.
     pub fn water_line(&self) -> Vec<[f64; 2]> {
-        let (Some([low, high]), Some(first), Some(last)) = (self.bounds(), self.water.first(), self.water.last()) else {
+        let (Some([low, high]), Some(first), Some(last)) = (self.bounds(), self.water.first(), self.water.last())
+        else {
             return Vec::new();
         };
         let left = (low[0] < first[0]).then_some([low[0], first[1]]);
