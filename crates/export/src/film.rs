@@ -15,9 +15,6 @@ const HEADER: usize = 16;
 /// Numbers of a block: the first have all four bytes, and the first three are its rigid motion.
 const FULL: usize = 2;
 const MOTION: usize = 3;
-/// State of an edge that is a free face, and the bit of one on which the water presses.
-const FREE: u8 = 0;
-const WET: u8 = 8;
 /// Bits of a support: held along x, along y.
 const ALONG: [u8; 2] = [1, 2];
 
@@ -47,8 +44,6 @@ pub struct Moved {
     pub numbers: Vec<f64>,
     /// Corners of each loop now (m).
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// Whether the edge behind each corner is a free face, which no joint makes.
-    pub free: Vec<Vec<bool>>,
 }
 
 /// A free length of a bolt in a frame.
@@ -186,7 +181,7 @@ impl Film {
         let [has_edges, has_supports, ..] = *bytes.take(4)? else { return None };
         let quantum = bytes.f64()?;
         let removed = bytes.take(outlines.blocks.len())?;
-        let edges = bytes.take(if has_edges > 0 { outlines.corners } else { 0 })?;
+        bytes.take(if has_edges > 0 { outlines.corners } else { 0 })?;
         let width = |k: usize| if k < FULL { 4 } else { 3 };
         let planes = (0..self.numbers).map(|k| bytes.planes(outlines.blocks.len(), width(k)));
         let numbers = planes.collect::<Option<Vec<_>>>()?;
@@ -202,7 +197,7 @@ impl Film {
         bytes.f64()?;
         let points = bytes.u32()? as usize;
         let water = bytes.places(points, 4, outlines.origin)?;
-        let blocks = moved(outlines, [removed, edges], &numbers, &rest)?;
+        let blocks = moved(outlines, removed, &numbers, &rest)?;
         Some(Frame { stage, blocks, bolts, supports, water })
     }
 }
@@ -244,17 +239,12 @@ fn outlines(body: &[u8]) -> Option<Outlines> {
     Some(Outlines { blocks: found, origin, corners })
 }
 
-/// Blocks with their numbers and corners now, of the bytes of blocks and of edges, which a film without joints lacks.
-fn moved(
-    outlines: &Outlines,
-    [removed, edges]: [&[u8]; 2],
-    numbers: &[Vec<f64>],
-    rest: &[Vec<f64>; 2],
-) -> Option<Vec<Moved>> {
+/// Blocks with their numbers and corners now.
+fn moved(outlines: &Outlines, removed: &[u8], numbers: &[Vec<f64>], rest: &[Vec<f64>; 2]) -> Option<Vec<Moved>> {
     if numbers.len() < MOTION {
         return None;
     }
-    let (mut corner, mut edge) = (0, 0);
+    let mut corner = 0;
     let block = |(k, block): (usize, &Outline)| {
         let (turn, shift) = (numbers[2][k], [numbers[0][k], numbers[1][k]]);
         let (sine, less) = (libm::sin(turn), libm::cos(turn) - 1.0);
@@ -265,12 +255,7 @@ fn moved(
             [0, 1].map(|axis| at[axis] + rigid[axis] + rest[axis][corner - 1])
         };
         let loops = block.loops.iter().map(|points| points.iter().map(&mut place).collect()).collect();
-        let mut is_free = |_: &[f64; 2]| {
-            edge += 1;
-            edges.get(edge - 1).is_some_and(|state| state & !WET == FREE)
-        };
-        let free = block.loops.iter().map(|points| points.iter().map(&mut is_free).collect()).collect();
-        Moved { removed: removed[k] > 0, numbers: numbers.iter().map(|all| all[k]).collect(), loops, free }
+        Moved { removed: removed[k] > 0, numbers: numbers.iter().map(|all| all[k]).collect(), loops }
     };
     Some(outlines.blocks.iter().enumerate().map(block).collect())
 }

@@ -7,6 +7,7 @@
 mod bytes;
 mod dxf;
 mod error;
+mod faces;
 mod film;
 mod geojson;
 mod records;

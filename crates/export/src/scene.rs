@@ -6,6 +6,7 @@ use enmm_report::FILM;
 use serde_json::Value;
 
 use crate::error::ExportError;
+use crate::faces;
 use crate::film::{Bolt, Film, Frame, Moved, Outline, Support};
 use crate::vtu::{Collection, Lines};
 
@@ -32,7 +33,8 @@ pub struct Block {
     pub numbers: Vec<f64>,
     /// Corners of each loop (m), the outer one first.
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// Whether the edge behind each corner is a free face, which no joint makes.
+    /// Whether the edge behind each corner lay on no other block that is there, nor on another edge of this one, before
+    /// the blocks moved.
     pub free: Vec<Vec<bool>>,
 }
 
@@ -119,13 +121,15 @@ impl Scene {
         let note = (removed > 0).then(|| format!("{removed} blocks have been excavated and are left out"));
         let rock = |outline: &Outline| text(&film.head["rocks"][outline.rock]);
         let there = film.outlines(number).iter().zip(blocks).filter(|(_, moved)| !moved.removed);
-        let block = |(outline, Moved { numbers, loops, free, .. }): (&Outline, Moved)| Block {
+        let block = |(outline, Moved { numbers, loops, .. }): (&Outline, Moved)| Block {
             outline: outline.clone(),
             rock: rock(outline),
             numbers,
             loops,
-            free,
+            free: Vec::new(),
         };
+        let mut blocks: Vec<Block> = there.map(block).collect();
+        faces::mark(&mut blocks);
         Ok(Self {
             title: text(&film.head["title"]),
             axis: (
@@ -133,7 +137,7 @@ impl Scene {
                 text(&film.head["axis"]["unit"]),
                 film.times().nth(number).unwrap_or_default(),
             ),
-            blocks: there.map(block).collect(),
+            blocks,
             numbers: film.numbers(),
             bolts: bolts.iter().enumerate().filter_map(|(k, bolt)| bolt_line(&film.head["bolts"][k], bolt)).collect(),
             supports: supports.unwrap_or_default(),
