@@ -56,18 +56,18 @@ struct Drawing {
 
 impl Drawing {
     fn blocks(&mut self, scene: &Scene) {
-        let all_free = |block: &Block| block.free.first().is_some_and(|outer| outer.iter().all(|free| *free));
         let alone = scene.blocks.len() == 1;
         for block in &scene.blocks {
             let rock = format!("rock_{}", block.rock);
             block.loops.iter().for_each(|points| self.polyline(&rock, points, true));
-            for (k, (points, free)) in block.loops.iter().zip(&block.free).enumerate() {
-                if free.iter().all(|free| *free) {
-                    let outer = if all_free(block) && !alone { "island" } else { "outline" };
-                    self.polyline(if k == 0 { outer } else { "hole" }, points, true);
-                } else {
-                    free_faces(points, free).iter().for_each(|chain| self.polyline("outline", chain, false));
-                }
+            for face in &block.free {
+                let layer = match face.loop_of {
+                    Some(0) if alone => "outline",
+                    Some(0) => "island",
+                    Some(_) => "hole",
+                    None => "outline",
+                };
+                self.polyline(layer, &face.points, face.loop_of.is_some());
             }
         }
     }
@@ -171,19 +171,6 @@ impl Drawing {
         head.put(&[(0, "ENDSEC"), (0, "EOF")]);
         head.entities
     }
-}
-
-/// Chains of edges of a loop that are free, of which not all are.
-fn free_faces(points: &[[f64; 2]], free: &[bool]) -> Vec<Vec<[f64; 2]>> {
-    let count = points.len();
-    let starts = (0..count).filter(|&k| free[k] && !free[(k + count - 1) % count]);
-    let chain = |start: usize| {
-        let edges = (start..start + count).take_while(|k| free[k % count]);
-        let mut chain: Vec<[f64; 2]> = edges.map(|k| points[k % count]).collect();
-        chain.push(points[(start + chain.len()) % count]);
-        chain
-    };
-    starts.map(chain).collect()
 }
 
 /// The greatest of 1, 2 and 5 times a power of ten that is not above a number.

@@ -6,7 +6,7 @@ use enmm_report::FILM;
 use serde_json::Value;
 
 use crate::error::ExportError;
-use crate::faces;
+use crate::faces::{self, Face};
 use crate::film::{Bolt, Film, Frame, Moved, Outline, Support};
 use crate::vtu::{Collection, Lines};
 
@@ -33,9 +33,8 @@ pub struct Block {
     pub numbers: Vec<f64>,
     /// Corners of each loop (m), the outer one first.
     pub loops: Vec<Vec<[f64; 2]>>,
-    /// Whether the edge behind each corner lay on no other block that is there, nor on another edge of this one, before
-    /// the blocks moved.
-    pub free: Vec<Vec<bool>>,
+    /// Its free faces now.
+    pub free: Vec<Face>,
 }
 
 /// A free length of a bolt now.
