@@ -20,6 +20,7 @@ mod progress;
 mod report;
 mod run;
 mod sample;
+mod sets;
 mod stereonet;
 mod sweep;
 mod told;
@@ -101,6 +102,8 @@ enum Command {
     Export(export::Arguments),
     /// Draws the joint sets of a case in space and checks which failures they allow.
     Stereonet(stereonet::Arguments),
+    /// Finds joint sets in a table of dips and dip directions: means, scatter, a net with a rosette, lines for a case.
+    Sets(sets::Arguments),
     /// Shows the model of a case in a browser while the case is written, built again at each save.
     Edit(edit::Arguments),
     /// Shows a run in a browser while it goes on.
@@ -146,6 +149,7 @@ fn execute(command: Command) -> Outcome {
         Command::Report(arguments) => report::report(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Stereonet(arguments) => stereonet::stereonet(&arguments),
+        Command::Sets(arguments) => sets::sets(&arguments),
         Command::Edit(arguments) => edit::edit(arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -29,6 +29,7 @@ mod resume;
 mod run;
 mod sample;
 mod set;
+mod sets;
 mod stereonet;
 mod support;
 mod sweep;

@@ -8,6 +8,8 @@
 //!
 //! Lines before the heads are passed over, as those of a DIPS file; other columns are not used.
 
+use std::collections::BTreeSet;
+
 use crate::axis::{Axis, line_of, plane_of, pole_of};
 use crate::error::FieldError;
 use crate::scanline::Scanline;
@@ -130,11 +132,17 @@ impl Table {
     /// # Errors
     /// A row is on a line that is not given, or a line is given that no row is on.
     pub fn weighted(&self, lines: &[Scanline]) -> Result<(Vec<(Axis, f64)>, usize), FieldError> {
+        let is_twice = |(k, line): &(usize, &Scanline)| lines[..*k].iter().any(|other| other.name == line.name);
+        if let Some((_, line)) = lines.iter().enumerate().find(is_twice) {
+            let name = line.name.as_deref().map_or("all rows".to_owned(), |name| format!("{name:?}"));
+            let message =
+                format!("two traverses are given for {name}, must be one; name the others, as T1=TREND/PLUNGE");
+            return Err(FieldError::Whole(message));
+        }
         let mut blind = 0;
         let mut poles = Vec::new();
         for row in &self.rows {
-            let of_row = |line: &&Scanline| line.name.is_none() || line.name == row.traverse;
-            let factor = match lines.iter().find(of_row) {
+            let factor = match line_along(lines, row) {
                 Some(line) => {
                     let (weight, is_blind) = line.weight(&row.pole);
                     blind += usize::from(is_blind);
@@ -162,6 +170,34 @@ impl Table {
             }
         }
     }
+
+    /// Mean distance (m) normal to the planes of a mean pole between neighbours among some rows, from their distances
+    /// along traverses: (last − first)/(n − 1) of each traverse, times the cosine between its line and the pole. None
+    /// where no traverse has two of them with distances.
+    pub fn spacing(&self, lines: &[Scanline], mean: &Axis, members: &[usize]) -> Option<f64> {
+        let rows = || members.iter().filter_map(|&k| self.rows.get(k));
+        let traverses: BTreeSet<&Option<String>> = rows().map(|row| &row.traverse).collect();
+        let (mut length, mut gaps) = (0.0, 0);
+        for traverse in traverses {
+            let own = || rows().filter(|row| row.traverse == *traverse);
+            let distances: Vec<f64> = own().filter_map(|row| row.distance).collect();
+            let Some(line) = own().next().and_then(|row| line_along(lines, row)) else { continue };
+            let ends = distances
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &at| [low.min(at), high.max(at)]);
+            if distances.len() > 1 {
+                length += (ends[1] - ends[0]) * line.across(mean);
+                gaps += distances.len() - 1;
+            }
+        }
+        (gaps > 0 && length > 0.0).then(|| length / gaps as f64)
+    }
+}
+
+/// The line along which a row was measured: that of its name, or else the one for all rows.
+fn line_along<'a>(lines: &'a [Scanline], row: &Measurement) -> Option<&'a Scanline> {
+    let named = lines.iter().find(|line| line.name.is_some() && line.name == row.traverse);
+    named.or_else(|| lines.iter().find(|line| line.name.is_none()))
 }
 
 impl Columns {

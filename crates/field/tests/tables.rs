@@ -62,4 +62,20 @@ fn rows_take_the_weight_of_their_line() {
     );
     let message = table.weighted(&[line("T1=60/0"), line("T2=0/0"), line("T3=0/0")]).expect_err("refused").to_string();
     assert!(message.contains("no row is on a traverse \"T3\""), "{message}");
+    let message = table.weighted(&[line("60/0"), line("0/0")]).expect_err("refused").to_string();
+    assert!(message.contains("two traverses are given for all rows"), "{message}");
+    // A name goes before the line for all rows.
+    assert!((weights(&[line("60/0"), line("T2=90/0")])[1] - 1.0).abs() < 1e-12);
+}
+
+/// Joints at 1, 3 and 5 m of a line at 60° to their normal are 2·cos 60° = 1 m apart.
+#[test]
+fn spacings_are_normal_to_the_joints() {
+    let text = "dip,dip direction,traverse,distance [m]\n90,0,T1,5\n90,0,T1,1\n90,0,T1,3\n90,0,T2,9\n";
+    let table = Table::parse("f.csv", text).expect("a table");
+    let lines = [Scanline::parse("T1=60/0").expect("a line"), Scanline::parse("T2=0/0").expect("a line")];
+    let spacing = table.spacing(&lines, &table.rows[0].pole, &[0, 1, 2, 3]).expect("a spacing");
+    assert!((spacing - 1.0).abs() < 1e-12, "{spacing}");
+    assert_eq!(table.spacing(&lines, &table.rows[0].pole, &[0, 3]), None);
+    assert_eq!(table.spacing(&[], &table.rows[0].pole, &[0, 1]), None);
 }
