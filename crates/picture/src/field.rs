@@ -4,11 +4,11 @@ use enmm_field::{Axis, CIRCLE, Fisher, density, plane_of, rosette};
 use enmm_stability::kinematics::{Line, Plane};
 
 use super::colour::{Colour, GREY, INK, LINES, PALE, SCALE_STEPS, WHITE, scale};
-use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted};
+use super::sheet::{Anchor, Path, Pixel, Rect, Sheet, Style, TextStyle, fitted, wrapped};
 use super::{Picture, Projection};
 
 /// Size of the sheet (px), centre and radius of the net.
-const SIZE: [f64; 2] = [1180.0, 780.0];
+const SIZE: [f64; 2] = [1180.0, 830.0];
 const CENTRE: Pixel = [370.0, 415.0];
 const RADIUS: f64 = 305.0;
 /// Centre and radius of the rosette.
@@ -25,7 +25,7 @@ const LEVELS: [f64; 12] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0,
 const LIST: f64 = 740.0;
 const TEXT: f64 = 16.0;
 const SMALL: f64 = 13.5;
-const ROWS: usize = 10;
+const ROWS: usize = 6;
 /// Most letters of a label in the net.
 const LABEL: usize = 6;
 /// Pieces of a great circle.
@@ -181,16 +181,24 @@ impl FieldNet {
             let Fisher { count, kappa, cone_deg, .. } = set.mean;
             let text = format!("{}  {dip:.1}°/{direction:05.1}°  n {count}", set.name);
             say(sheet, &text, TextStyle::new(TEXT).colour(colour(k)), TEXT, 18.0);
-            let trace = if set.remark.is_empty() { String::new() } else { format!("; {}", set.remark) };
-            let text = format!("κ {kappa:.1}; mean ± {cone_deg:.1}° (95 %){trace}");
-            say(sheet, &text, TextStyle::new(SMALL).colour(GREY), SMALL, 22.0);
+            let text = format!("κ {kappa:.1}; mean ± {cone_deg:.1}° (95 %)");
+            say(
+                sheet,
+                &text,
+                TextStyle::new(SMALL).colour(GREY),
+                SMALL,
+                if set.remark.is_empty() { 22.0 } else { 16.0 },
+            );
+            if !set.remark.is_empty() {
+                say(sheet, &set.remark, TextStyle::new(SMALL).colour(GREY), SMALL, 22.0);
+            }
         }
         if self.sets.len() > ROWS {
             let text = format!("and {} more", self.sets.len() - ROWS);
             say(sheet, &text, TextStyle::new(SMALL).colour(GREY), SMALL, 22.0);
         }
-        for note in &self.notes {
-            say(sheet, note, TextStyle::new(SMALL).colour(GREY), SMALL, 17.0);
+        for line in self.notes.iter().flat_map(|note| wrapped(note, SMALL, room)) {
+            say(sheet, &line, TextStyle::new(SMALL).colour(GREY), SMALL, 17.0);
         }
     }
 
@@ -216,7 +224,7 @@ impl FieldNet {
         }
         let text = format!("strikes in 10°; rim {:.1} %", 100.0 * most);
         let style = TextStyle::new(SMALL).anchor(Anchor::Middle).colour(GREY);
-        sheet.text([ROSE[0], ROSE[1] + PETAL + 40.0], &text, style);
+        sheet.text([ROSE[0], ROSE[1] + PETAL + 56.0], &text, style);
     }
 }
 
