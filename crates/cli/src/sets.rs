@@ -27,8 +27,8 @@ pub struct Arguments {
     /// Table of measurements (CSV), as DIPS and FracMan write it.
     #[arg(value_name = "TABLE")]
     table: PathBuf,
-    /// Trend and plunge (degrees) of the line along which the joints were measured, which weights them by Terzaghi; with
-    /// NAME= for the rows whose column traverse has that name, as often as needed.
+    /// Trend and plunge (degrees) of the line along which the joints were measured, which weights them by Terzaghi;
+    /// with NAME= for the rows whose column traverse has that name, as often as needed.
     #[arg(long, value_name = "[NAME=]TREND/PLUNGE", value_parser = Scanline::parse)]
     traverse: Vec<Scanline>,
     /// Number of sets; default: the one with the least integrated completed likelihood criterion.
@@ -98,7 +98,7 @@ pub fn sets(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What was found, as lines of a name and a text.
+/// The sets, as lines of a name and a text.
 fn lines(found: &FoundSets, table: &Table) -> Vec<String> {
     let mut lines = vec![format!("{:<21} {}", "planes", table.rows.len())];
     let tried = found.criteria.iter().enumerate();
@@ -112,7 +112,8 @@ fn lines(found: &FoundSets, table: &Table) -> Vec<String> {
         let trace = found.trace(set);
         let trace = if trace.is_empty() { trace } else { format!("; {trace}") };
         lines.push(format!(
-            "{:<21} {dip:.1}°/{direction:05.1}° ± {:.1}° (95 %), κ {:.1}, half of its poles within {:.1}°, {} planes{trace}",
+            "{:<21} {dip:.1}°/{direction:05.1}° ± {:.1}° (95 %), κ {:.1}, half of its poles within {:.1}°, {} \
+             planes{trace}",
             set.name,
             mean.cone_deg,
             mean.kappa,

@@ -1,5 +1,5 @@
-//! Claim: `enmm export` writes what a run has found: tables, blocks and joints with their numbers; and the drawing that it
-//! writes gives the same blocks back.
+//! Claim: `enmm export` writes what a run has found: tables, blocks and joints with their numbers; and the drawing that
+//! it writes gives the same blocks back.
 
 use std::fs;
 
@@ -49,8 +49,8 @@ fn blocks(place: &Place) -> Vec<Vec<(String, f64)>> {
     lines.map(row).collect()
 }
 
-/// The block has an area of 1.2 m² on a plane of slope 1 in 2, over 0.6·√5 m of it: at rest the normal stress is the part
-/// of its weight across the plane over that length, and the shear stress half of it.
+/// The block has an area of 1.2 m² on a plane of slope 1 in 2, over 0.6·√5 m of it: at rest the normal stress is the
+/// part of its weight across the plane over that length, and the shear stress half of it.
 #[test]
 fn features_have_the_numbers_of_the_run_and_of_the_hand() {
     let place = run();

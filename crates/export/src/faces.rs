@@ -1,8 +1,6 @@
 //! Free faces of blocks: the parts of their edges that lay on no edge of a block before the blocks moved. The states of
 //! contacts do not say it, since blocks come to touch free faces, and excavated ones leave them.
 
-use crate::scene::Block;
-
 /// Distance of places that are one, over the size of the slope: places of a film have single precision.
 const NEAR: f64 = 1e-6;
 
@@ -18,28 +16,27 @@ pub struct Face {
     pub loop_of: Option<usize>,
 }
 
-/// Finds the free faces of blocks.
-pub fn mark(blocks: &mut [Block]) {
-    let boxes: Vec<Extent> = blocks.iter().map(extent).collect();
+/// Loops of a block.
+type Loops = [Vec<[f64; 2]>];
+
+/// Free faces of blocks by their loops before they moved and now.
+pub fn free_faces(blocks: &[(&Loops, &Loops)]) -> Vec<Vec<Face>> {
+    let boxes: Vec<Extent> = blocks.iter().map(|(before, _)| extent(before)).collect();
     let all = boxes.iter().copied().reduce(join).unwrap_or_default();
     let near = NEAR * (all[1][0] - all[0][0]).max(all[1][1] - all[0][1]);
     let meet =
         |a: &Extent, b: &Extent| (0..2).all(|axis| a[0][axis] <= b[1][axis] + near && b[0][axis] <= a[1][axis] + near);
-    let faces: Vec<Vec<Face>> = boxes
-        .iter()
-        .zip(&*blocks)
-        .map(|(own, block)| {
-            let others: Vec<&Block> =
-                boxes.iter().zip(&*blocks).filter(|(other, _)| meet(own, other)).map(|(_, other)| other).collect();
-            let loops = block.outline.loops.iter().zip(&block.loops).enumerate();
-            loops.flat_map(|(k, (before, now))| faces(k, before, now, &others, near)).collect()
-        })
-        .collect();
-    blocks.iter_mut().zip(faces).for_each(|(block, free)| block.free = free);
+    let of_block = |(own, (before, now)): (&Extent, &(&Loops, &Loops))| -> Vec<Face> {
+        let others = boxes.iter().zip(blocks).filter(|(other, _)| meet(own, other));
+        let others: Vec<&Loops> = others.map(|(_, (before, _))| *before).collect();
+        let loops = before.iter().zip(*now).enumerate();
+        loops.flat_map(|(k, (before, now))| faces(k, before, now, &others, near)).collect()
+    };
+    boxes.iter().zip(blocks).map(of_block).collect()
 }
 
-fn extent(block: &Block) -> Extent {
-    let points = block.outline.loops.iter().flatten().map(|point| [*point, *point]);
+fn extent(loops: &Loops) -> Extent {
+    let points = loops.iter().flatten().map(|point| [*point, *point]);
     points.reduce(join).unwrap_or_default()
 }
 
@@ -52,7 +49,7 @@ fn edges(points: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
 }
 
 /// Free faces of a loop: its parts that are free before the move, where they are now.
-fn faces(number: usize, before: &[[f64; 2]], now: &[[f64; 2]], others: &[&Block], near: f64) -> Vec<Face> {
+fn faces(number: usize, before: &[[f64; 2]], now: &[[f64; 2]], others: &[&Loops], near: f64) -> Vec<Face> {
     let mut faces: Vec<Face> = Vec::new();
     let mut goes_on = false;
     for (edge, [from, to]) in edges(before).zip(edges(now)) {
@@ -83,7 +80,7 @@ fn faces(number: usize, before: &[[f64; 2]], now: &[[f64; 2]], others: &[&Block]
 }
 
 /// Parts of an edge, as shares of it, on which no edge lies that runs the other way, as that of rock on its other side.
-fn free_parts(edge: [[f64; 2]; 2], others: &[&Block], near: f64) -> Vec<[f64; 2]> {
+fn free_parts(edge: [[f64; 2]; 2], others: &[&Loops], near: f64) -> Vec<[f64; 2]> {
     let along = [edge[1][0] - edge[0][0], edge[1][1] - edge[0][1]];
     let length = libm::hypot(along[0], along[1]);
     if length <= near {
@@ -98,7 +95,7 @@ fn free_parts(edge: [[f64; 2]; 2], others: &[&Block], near: f64) -> Vec<[f64; 2]
         let ((start, off), (end, other)) = (place(&from), place(&to));
         (start > end && off <= near && other <= near && start > 0.0 && end < 1.0).then_some([end, start])
     };
-    let loops = others.iter().flat_map(|other| &other.outline.loops);
+    let loops = others.iter().flat_map(|other| other.iter());
     let mut covers: Vec<[f64; 2]> = loops.flat_map(|points| edges(points).filter_map(covered)).collect();
     covers.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let least = near / length;

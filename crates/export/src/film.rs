@@ -95,7 +95,7 @@ pub struct Outlines {
 #[derive(Debug)]
 pub struct Film {
     path: PathBuf,
-    /// What it says of itself.
+    /// Its head: title, rocks, bolts, names of numbers.
     pub head: Value,
     outlines: Vec<Outlines>,
     /// Place on the axis, number of the outlines, packed bytes.

@@ -1,5 +1,5 @@
-//! A slope as features (GeoJSON, RFC 7946): blocks, joints, bolts, supports, water. Coordinates are those of the section
-//! in metres, x to the right and y up, not longitude and latitude.
+//! A slope as features (GeoJSON, RFC 7946): blocks, joints, bolts, supports, water. Coordinates are those of the
+//! section in metres, x to the right and y up, not longitude and latitude.
 
 use serde_json::{Map, Value, json};
 

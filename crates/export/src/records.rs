@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use crate::tables::{Cell, Table};
+use crate::table::{Cell, Table};
 use crate::units::unit;
 
 /// Input of the case in records.

@@ -6,7 +6,7 @@ use enmm_report::FILM;
 use serde_json::Value;
 
 use crate::error::ExportError;
-use crate::faces::{self, Face};
+use crate::faces::{Face, free_faces};
 use crate::film::{Bolt, Film, Frame, Moved, Outline, Support};
 use crate::vtu::{Collection, Lines};
 
@@ -128,7 +128,9 @@ impl Scene {
             free: Vec::new(),
         };
         let mut blocks: Vec<Block> = there.map(block).collect();
-        faces::mark(&mut blocks);
+        let loops: Vec<_> = blocks.iter().map(|block| (&block.outline.loops[..], &block.loops[..])).collect();
+        let free = free_faces(&loops);
+        blocks.iter_mut().zip(free).for_each(|(block, free)| block.free = free);
         Ok(Self {
             title: text(&film.head["title"]),
             axis: (

@@ -8,37 +8,12 @@ use serde_json::Value;
 
 use crate::error::ExportError;
 use crate::records;
+use crate::table::{Cell, Table};
 
 /// Folders of the results of commands within that of a run.
 const FOLDERS: [&str; 6] = ["", "run", "fos", "bound", "sample", "sweep"];
 /// Largest table or record that is read (bytes).
 const FILE_MAX: u64 = 256 << 20;
-
-/// One cell.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// Nothing.
-    Empty,
-    /// A finite number.
-    Number(f64),
-    /// A text, or a number that is none in double precision.
-    Text(String),
-    /// True or false.
-    Flag(bool),
-}
-
-/// A table with one row of heads.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Table {
-    /// Name, such as `history` or `summary.json.stages`.
-    pub name: String,
-    /// The file that it is from.
-    pub source: PathBuf,
-    /// Heads of the columns, with units in brackets.
-    pub columns: Vec<String>,
-    /// Rows, as long as the heads.
-    pub rows: Vec<Vec<Cell>>,
-}
 
 /// All tables of a folder of results, and of the folders `run`, `fos`, `bound`, `sample` and `sweep` in it.
 ///

@@ -5,9 +5,9 @@ use crate::axis::{Axis, cosine};
 /// Share of the hemisphere of the counting circle.
 pub const CIRCLE: f64 = 0.01;
 
-/// Density of weighted poles at an axis, as the share (%) of all poles in a counting circle of 1 % of the hemisphere: each
-/// pole counts with e^(κ·(cos θ − 1)), κ = 100, a Fisher influence that has the content of that circle. Its mean over
-/// the hemisphere is 1 %, which poles without any preference have everywhere.
+/// Density of weighted poles at an axis, as the share (%) of all poles in a counting circle of 1 % of the hemisphere:
+/// each pole counts with e^(κ·(cos θ − 1)), κ = 100, a Fisher influence that has the content of that circle. Its mean
+/// over the hemisphere is 1 %, which poles without any preference have everywhere.
 pub fn density(poles: &[(Axis, f64)], at: &Axis) -> f64 {
     let influence = |pole: &Axis| libm::exp((cosine(pole, at).abs() - 1.0) / CIRCLE);
     let (sum, all) =

@@ -19,8 +19,8 @@ pub struct Fisher {
     pub weight: f64,
     /// Concentration κ = (n − 1)/(n − R), at most 1e6.
     pub kappa: f64,
-    /// Half the angle (degrees) of the cone about the mean in which the true mean is with 95 % confidence; 180 where too
-    /// few poles tell nothing.
+    /// Half the angle (degrees) of the cone about the mean in which the true mean is with 95 % confidence; 180 where
+    /// too few poles tell nothing.
     pub cone_deg: f64,
 }
 

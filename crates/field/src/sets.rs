@@ -1,12 +1,12 @@
 //! Sets of poles: k-means of axes on the sphere, and how many sets there are.
 //!
-//! Each pole belongs to the centre with which it has the greatest |cosine|, and each centre is the principal axis of its
-//! poles, so that the sum of the weighted squares of sines falls until nothing changes. It begins at the pole with the
-//! densest surroundings, then at that with the greatest density times the squared sine from the centres before: the same
-//! table has the same sets. The number of sets, unless given, is the one with the least integrated completed likelihood
-//! criterion −2·ln L + (4·k − 1)·ln n (C. Biernacki, G. Celeux and G. Govaert, 2000), where each set has a Fisher
-//! distribution and its share of the poles: a set in halves gains less by its smaller scatter than it loses by their
-//! shares.
+//! Each pole belongs to the centre with which it has the greatest |cosine|, and each centre is the principal axis of
+//! its poles, so that the sum of the weighted squares of sines falls until nothing changes. It begins at the pole with
+//! the densest surroundings, then at that with the greatest density times the squared sine from the centres before: the
+//! same table has the same sets. The number of sets, unless given, is the one with the least integrated completed
+//! likelihood criterion −2·ln L + (4·k − 1)·ln n (C. Biernacki, G. Celeux and G. Govaert, 2000), where each set has a
+//! Fisher distribution and its share of the poles: a set in halves gains less by its smaller scatter than it loses by
+//! their shares.
 
 use crate::axis::{Axis, cosine, principal};
 use crate::density::density;

@@ -1,5 +1,5 @@
-//! Tables of measurements, such as DIPS and FracMan write: CSV with commas, semicolons or tabs, lines that begin with `#`
-//! or `*` left out, and a line of heads in any letter case, perhaps with a unit (`Dip [deg]`):
+//! Tables of measurements, such as DIPS and FracMan write: CSV with commas, semicolons or tabs, lines that begin with
+//! `#` or `*` left out, and a line of heads in any letter case, perhaps with a unit (`Dip [deg]`):
 //!
 //! - `dip` and `dip direction` (or `dipdir`, `dip azimuth`, `azimuth`), or `strike` (dip to its right), or `trend` and
 //!   `plunge` of the pole;
@@ -75,7 +75,7 @@ struct Columns {
     distance: Option<usize>,
 }
 
-/// What two columns give a plane.
+/// How two columns give a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Form {
     DipDirection,

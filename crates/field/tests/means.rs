@@ -10,9 +10,9 @@ fn drawn(mean: [f64; 3], kappa: f64, count: usize, seed: u64) -> Vec<([f64; 3], 
     (0..count).map(|_| (down(fisher(mean, kappa, &mut dice)), 1.0)).collect()
 }
 
-/// 2·(n − R)·κ has the distribution of χ² with 2·(n − 1) degrees (G. S. Watson, 1956), near normal for many poles: 95 % of
-/// the estimates of κ from 1000 poles are within 1.96/√1000 = 6.2 % of it. 95 % of the cones hold the true mean. Of 200
-/// draws, 95 % ± 3·√(0.95·0.05/200) = 90.4 % to 99.6 % must be within.
+/// 2·(n − R)·κ has the distribution of χ² with 2·(n − 1) degrees (G. S. Watson, 1956), near normal for many poles: 95 %
+/// of the estimates of κ from 1000 poles are within 1.96/√1000 = 6.2 % of it. 95 % of the cones hold the true mean. Of
+/// 200 draws, 95 % ± 3·√(0.95·0.05/200) = 90.4 % to 99.6 % must be within.
 #[test]
 fn concentration_and_mean_are_within_their_confidence_as_often_as_they_say() {
     // Level poles turn up on both sides of the net.

@@ -107,7 +107,7 @@ impl FieldNet {
                     let next = (spoke + 1) % SPOKES;
                     let corners =
                         [nodes[ring][spoke], nodes[ring][next], nodes[ring + 1][next], nodes[ring + 1][spoke]];
-                    // What lies above the next level is drawn with that.
+                    // Cells above the next level are drawn with that.
                     if levels.get(band + 1).is_none_or(|next| corners.iter().any(|(_, value)| value < next)) {
                         let above = above(&corners, level);
                         if above.len() > 2 {
