@@ -1,3 +1,4 @@
 //! Tests of the exports.
 
+mod slopes;
 mod spreadsheets;
