@@ -43,8 +43,8 @@ fn outline(id: u32, rock: u16, loops: Vec<Vec<[f64; 2]>>) -> Outline {
     Outline { id, fixed: id == 0, rock, area: 1.0 + f64::from(id), mass: 2e3, centroid: middle, loops }
 }
 
-/// A floor of 8 m × 2 m with a hole, a block of 4 m × 3 m on its left half, and one on its right half that is excavated;
-/// no corner of the floor is where the two meet.
+/// A floor of 8 m × 2 m with a hole, a block of 4 m × 3 m on its left half, and one on its right half that is
+/// excavated; no corner of the floor is where the two meet.
 fn outlines() -> Vec<Outline> {
     let rect = |x: [f64; 2], y: [f64; 2]| vec![[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
     let mut hole = rect([3.0, 5.0], [0.5, 1.5]);
