@@ -16,6 +16,8 @@ const OF: &str = "of row";
 const WHOLE_MAX: u64 = 1 << 53;
 
 type Object = Map<String, Value>;
+/// An object of a list, with the row of another table that it belongs to.
+type Row<'a> = (Option<usize>, &'a Object);
 
 /// The table of the single values of a record and those of its lists.
 pub fn tables(path: &Path, name: &str, record: &Value) -> Vec<Table> {
@@ -43,10 +45,10 @@ struct Builder<'a> {
 impl Builder<'_> {
     /// Adds the table of a list, each object with the row of another table that it belongs to, and those of lists in
     /// its rows.
-    fn list(&mut self, key: &str, objects: Vec<(Option<usize>, &Object)>) {
+    fn list(&mut self, key: &str, objects: Vec<Row>) {
         let mut columns: Vec<(&'static str, String)> = Vec::new();
         let mut rows: Vec<Vec<(usize, Cell)>> = Vec::new();
-        let mut inner: Vec<(String, Vec<(Option<usize>, &Object)>)> = Vec::new();
+        let mut inner: Vec<(String, Vec<Row>)> = Vec::new();
         let is_inner = objects.iter().any(|(of, _)| of.is_some());
         for (k, (of, object)) in objects.into_iter().enumerate() {
             let mut parts = Parts::default();

@@ -1,7 +1,7 @@
 //! Units of the numbers of records, which stand in no record: JSON objects have names alone.
 
 /// Units by the last part of a name, or its last two parts where another quantity has the same one.
-const UNITS: [(&str, &str); 74] = [
+const UNITS: [(&str, &str); 78] = [
     ("acceleration", "m/s2"),
     ("area", "m2"),
     ("baseline", "J/m"),
@@ -32,13 +32,16 @@ const UNITS: [(&str, &str); 74] = [
     ("external_work", "J/m"),
     ("failing_area", "m2"),
     ("flow", "m2/s"),
+    ("flow.residual", "m2/s"),
     ("force", "N"),
     ("fracture", "J/m"),
     ("gap", "m"),
+    ("gap_mm", "mm"),
     ("head", "m"),
     ("kinetic_energy", "J/m"),
     ("least_area", "m2"),
     ("leaves", "m2/s"),
+    ("length", "m"),
     ("mass", "kg/m"),
     ("mesh_size", "m"),
     ("moment", "N"),
@@ -76,6 +79,7 @@ const UNITS: [(&str, &str); 74] = [
     ("wall_seconds.sweep", "s"),
     ("wall_seconds.total", "s"),
     ("mechanism.x", "m"),
+    ("mechanism.y", "m"),
 ];
 
 /// The unit of a number by its name in a record, such as `stages.time`; empty for a pure number and for one that is not

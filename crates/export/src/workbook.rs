@@ -214,7 +214,7 @@ fn push_row(row: usize, cells: &[Cell], style: &str, text: &mut String) {
             }
             Cell::Text(words) => text.push_str(&format!(
                 "<c r=\"{place}\"{style} t=\"inlineStr\"><is><t xml:space=\"preserve\">{}</t></is></c>",
-                escape(&allowed(words))
+                escape(allowed(words))
             )),
         }
     }

@@ -63,10 +63,9 @@ fn eigen(mut tensor: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
             for row in &mut tensor {
                 (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
             }
-            for column in 0..3 {
-                let [a, b] = [tensor[p][column], tensor[q][column]];
-                (tensor[p][column], tensor[q][column]) = (cos * a - sin * b, sin * a + cos * b);
-            }
+            let [a, b] = [tensor[p], tensor[q]];
+            tensor[p] = [0, 1, 2].map(|k| cos * a[k] - sin * b[k]);
+            tensor[q] = [0, 1, 2].map(|k| sin * a[k] + cos * b[k]);
             for row in &mut vectors {
                 (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
             }
