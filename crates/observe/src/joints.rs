@@ -114,6 +114,24 @@ impl Joints {
         &self.of_edges[start..end]
     }
 
+    /// Pieces of joint from the point of a node to the next node, of those that are on the first of their two faces.
+    pub fn along(&self, boundary: &Boundary, point: EdgeId) -> Vec<u32> {
+        let end = boundary.nodes.point[boundary.nodes.next[boundary.node_before[point]]];
+        let edges = std::iter::successors(Some(point), |&edge| Some(boundary.after(edge)).filter(|&next| next != end));
+        let first = |edge: EdgeId| self.on(edge).iter().filter(move |&&k| self.pieces[k as usize].edges[0] == edge);
+        edges.flat_map(first).copied().collect()
+    }
+
+    /// Opening and slip (m) of all pieces since the start, those of excavated blocks too.
+    pub fn moved(&self, simulation: &Simulation) -> Vec<[f64; 2]> {
+        let positions = simulation.positions();
+        let moved = |piece: &Facing| {
+            let JointPiece { opening, slip, .. } = seen(simulation, &positions, piece);
+            [opening, slip]
+        };
+        self.pieces.iter().map(moved).collect()
+    }
+
     /// The joints now; those of excavated blocks are left out.
     pub fn now(&self, simulation: &Simulation) -> Vec<JointPiece> {
         let (model, removed) = (simulation.model(), &simulation.state().removed);

@@ -230,6 +230,14 @@ impl Recorder {
         self.film.frame(simulation)
     }
 
+    /// Appends a frame to the film in any case with its elements, as at the end of a stage.
+    ///
+    /// # Errors
+    /// As [`Recorder::open`].
+    pub fn push_end_of_film(&mut self, simulation: &Simulation) -> io::Result<()> {
+        self.film.frame_at(simulation, simulation.time())
+    }
+
     /// Looks at the model before a step whose report becomes a row.
     pub fn before_row(&mut self, simulation: &Simulation) {
         self.row = Some(self.row_start(simulation));
@@ -311,7 +319,7 @@ impl Recorder {
             simulation.drop_buffers();
         }
         self.push_frame(simulation)?;
-        self.push_film(simulation)?;
+        self.push_end_of_film(simulation)?;
         self.draw_stage(simulation)?;
         self.row_now(simulation, now)
     }
@@ -514,6 +522,7 @@ fn film(
         film: directory.join(FILM),
         axis: Axis::time(),
         numbers: numbers(simulation),
+        elements: true,
         columns: &columns,
     };
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;

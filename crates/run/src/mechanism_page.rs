@@ -32,6 +32,7 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
         film: unfinished.path().to_owned(),
         axis,
         numbers: numbers(simulation),
+        elements: true,
         columns: &[],
     };
     let mut film = Film::open(directory, loaded, simulation, opening, None)?;
@@ -63,8 +64,14 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening =
-        Opening { command: "bound", film: unfinished.path().to_owned(), axis, numbers: MOTION.to_vec(), columns: &[] };
+    let opening = Opening {
+        command: "bound",
+        film: unfinished.path().to_owned(),
+        axis,
+        numbers: MOTION.to_vec(),
+        elements: false,
+        columns: &[],
+    };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     let moving = &bound.level_tops.mechanism;
     let reach = SHOWN * greater_side(&simulation);
@@ -100,8 +107,14 @@ pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Brack
     let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening =
-        Opening { command: "bound", film: unfinished.path().to_owned(), axis, numbers: MOTION.to_vec(), columns: &[] };
+    let opening = Opening {
+        command: "bound",
+        film: unfinished.path().to_owned(),
+        axis,
+        numbers: MOTION.to_vec(),
+        elements: false,
+        columns: &[],
+    };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     film.frame_at(&simulation, 0.0)?;
     let reach = SHOWN * greater_side(&simulation);
