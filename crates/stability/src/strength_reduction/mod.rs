@@ -32,9 +32,11 @@ pub use mechanism::{CHIP, MechanismOptions, mechanisms};
 pub use series::Series;
 pub use setting::Geometry;
 pub use slip::slide;
+pub use trial::Begun;
 
 use series::Trials;
 use setting::Setting;
+use trial::Ended;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
@@ -210,6 +212,8 @@ pub struct Reduction {
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
     pub simulation: Simulation,
+    /// How the motion of that trial began; none at rest.
+    pub begun: Option<Begun>,
 }
 
 impl Reduction {
@@ -315,6 +319,8 @@ pub fn factor_of_safety(
     let SecondOpinion { bound, bracket, ends } = opinion;
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
     let free_area = base.free_area();
+    let at_rest = Ended { simulation: base.simulation, begun: None };
+    let Ended { simulation, begun } = failed.unwrap_or(at_rest);
     let mut reduction = Reduction {
         trials: series.trials,
         low: series.low,
@@ -330,7 +336,8 @@ pub fn factor_of_safety(
         bracket,
         ends,
         warnings: rest.warnings,
-        simulation: failed.unwrap_or(base.simulation),
+        simulation,
+        begun,
     };
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);
