@@ -47,6 +47,32 @@ pub struct Meshes {
     before: Option<[Series; 4]>,
 }
 
+/// Parts of the bytes of elements.
+#[derive(Debug, Default)]
+struct Planes {
+    /// Quantum of places (m).
+    unit: f64,
+    /// Ways from each point to the next, in quanta.
+    ways: [Vec<u8>; 2],
+    /// Place of the last point in quanta.
+    last: [i64; 2],
+    sides: Vec<u8>,
+    rings: Vec<u8>,
+    faces: Vec<u8>,
+}
+
+impl Planes {
+    /// Appends a place (m, from the origin); returns it as a reader has it.
+    fn push_place(&mut self, place: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let at = (place[axis] / self.unit).round() as i64;
+            push_integer(at - self.last[axis], &mut self.ways[axis]);
+            self.last[axis] = at;
+            at as f64 * self.unit
+        })
+    }
+}
+
 /// Numbers in quanta, part by part.
 #[derive(Debug, Clone)]
 struct Series {
@@ -74,59 +100,50 @@ impl Meshes {
         expect("numbers of blocks for elements", places.iter().flatten().count(), FROM.len())?;
         let from = places.map(Option::unwrap_or_default);
         let mut meshes = Self { size, from, points: Vec::new(), middles: Vec::new(), joints: 0, before: None };
-        let unit = size / PLACES;
-        let mut bytes = Vec::new();
-        let count = |of: fn(&Outline) -> usize| outlines.iter().map(of).sum::<usize>() as u32;
-        bytes.extend(count(|block| block.mesh.elements.len()).to_le_bytes());
-        bytes.extend(count(|block| block.mesh.points.len()).to_le_bytes());
-        bytes.extend(unit.to_le_bytes());
-        for block in outlines {
-            [block.mesh.elements.len(), block.mesh.points.len()]
-                .iter()
-                .for_each(|&count| bytes.extend((count as u32).to_le_bytes()));
-        }
-        let mut ways: [Vec<u8>; 2] = Default::default();
-        let mut last = [0_i64; 2];
-        let (mut sides, mut rings, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+        let mut planes = Planes { unit: size / PLACES, ..Planes::default() };
         for (k, block) in outlines.iter().enumerate() {
-            let centroid = [0, 1].map(|axis| f64::from((block.centroid[axis] - origin[axis]) as f32));
-            let corners = block.loops.iter().flatten();
-            let mut own: Vec<[f64; 2]> =
-                corners.map(|corner| [0, 1].map(|axis| f64::from((corner[axis] - origin[axis]) as f32))).collect();
-            expect("edges of a block that may be joints", block.mesh.faces.len(), own.len())?;
-            for point in &block.mesh.points {
-                let mut place = [0.0; 2];
-                for axis in [0, 1] {
-                    finite(point[axis], 0.0, || format!("a point of an element of block {}", block.id))?;
-                    let at = ((point[axis] - origin[axis]) / unit).round() as i64;
-                    push_integer(at - last[axis], &mut ways[axis]);
-                    last[axis] = at;
-                    place[axis] = at as f64 * unit;
-                }
-                meshes.points.push((k, [0, 1].map(|axis| place[axis] - centroid[axis])));
-                own.push(place);
-            }
-            let mut before = 0;
-            for ring in &block.mesh.elements {
-                expect(
-                    "points of an element that its block has",
-                    ring.iter().filter(|&&at| (at as usize) < own.len()).count(),
-                    ring.len().max(3),
-                )?;
-                expect("points of an element", ring.len().min(255), ring.len())?;
-                sides.push(ring.len() as u8);
-                for &at in ring {
-                    push_integer(i64::from(at) - before, &mut rings);
-                    before = i64::from(at);
-                }
-                let mean = |axis: usize| ring.iter().map(|&at| own[at as usize][axis]).sum::<f64>() / ring.len() as f64;
-                meshes.middles.push((k, [0, 1].map(|axis| mean(axis) - centroid[axis])));
-            }
-            faces.extend(block.mesh.faces.iter().map(|&faces| u8::from(faces)));
+            meshes.add(k, block, origin, &mut planes)?;
         }
-        meshes.joints = faces.iter().filter(|&&faces| faces == 1).count();
-        [&ways[0], &ways[1], &sides, &rings, &faces].iter().for_each(|part| bytes.extend_from_slice(part));
+        let mut bytes = Vec::new();
+        let counts = outlines.iter().flat_map(|block| [block.mesh.elements.len(), block.mesh.points.len()]);
+        [meshes.middles.len(), meshes.points.len()].iter().for_each(|&n| bytes.extend((n as u32).to_le_bytes()));
+        bytes.extend(planes.unit.to_le_bytes());
+        counts.for_each(|count| bytes.extend((count as u32).to_le_bytes()));
+        let Planes { ways: [x, y], sides, rings, faces, .. } = planes;
+        [x, y, sides, rings, faces].iter().for_each(|part| bytes.extend_from_slice(part));
         Ok(Some((bytes, meshes)))
+    }
+
+    /// Adds the elements of block `k`.
+    fn add(&mut self, k: usize, block: &Outline, origin: [f64; 2], planes: &mut Planes) -> Result<(), FilmError> {
+        let from_origin = |place: [f64; 2]| [0, 1].map(|axis| f64::from((place[axis] - origin[axis]) as f32));
+        let centroid = from_origin(block.centroid);
+        let arm = |place: [f64; 2]| (k, [0, 1].map(|axis| place[axis] - centroid[axis]));
+        let mut places: Vec<[f64; 2]> = block.loops.iter().flatten().map(|&corner| from_origin(corner)).collect();
+        expect("edges of a block that may be joints", block.mesh.faces.len(), places.len())?;
+        for point in &block.mesh.points {
+            point.iter().try_for_each(|&part| {
+                finite(part, 0.0, || format!("a point of an element of block {}", block.id)).map(|_| ())
+            })?;
+            let place = planes.push_place([0, 1].map(|axis| point[axis] - origin[axis]));
+            self.points.push(arm(place));
+            places.push(place);
+        }
+        let mut before = 0;
+        for ring in &block.mesh.elements {
+            let there = ring.iter().filter(|&&at| (at as usize) < places.len()).count();
+            expect("points of an element", there, ring.len().clamp(3, usize::from(u8::MAX)))?;
+            planes.sides.push(ring.len() as u8);
+            for &at in ring {
+                push_integer(i64::from(at) - before, &mut planes.rings);
+                before = i64::from(at);
+            }
+            let mean = |axis: usize| ring.iter().map(|&at| places[at as usize][axis]).sum::<f64>() / ring.len() as f64;
+            self.middles.push(arm([0, 1].map(mean)));
+        }
+        planes.faces.extend(block.mesh.faces.iter().map(|&faces| u8::from(faces)));
+        self.joints += block.mesh.faces.iter().filter(|&&faces| faces).count();
+        Ok(())
     }
 
     /// Forgets the numbers before: the next ones stand for themselves.
@@ -139,41 +156,49 @@ impl Meshes {
     /// # Errors
     /// A list of the wrong length, or the first number that is not finite.
     pub fn frame(&mut self, time: f64, elements: &Elements, numbers: &[Vec<f32>]) -> Result<Vec<u8>, FilmError> {
+        self.check(time, elements)?;
+        let (motion, velocity) =
+            (self.motion_left(elements.points, numbers), self.velocity_left(elements.velocity, numbers));
+        let (stress, joints) = (self.stress_left(elements.stress, numbers), self.joint_steps(elements.joints));
+        let left = [&motion[..], &velocity, &stress, &joints];
+        let scales = [usual(elements.points), usual(elements.velocity), usual(elements.stress)];
+        let room = ((ROOM * self.middles.len() as f64) as usize).max(ROOM_LEAST);
+        let [finest, coarsest] = HALVINGS;
+        let mut halvings = finest;
+        loop {
+            let quanta = self.quanta(scales, halvings);
+            let before = |k: usize| self.before.as_ref().map(|all| &all[k]);
+            let made = [0, 1, 2, 3].map(|k| Series::next(before(k), left[k], quanta[k]));
+            let bytes = body(&made, self.before.is_some());
+            if halvings == coarsest || packed_length(&bytes) <= room {
+                self.before = Some(made.map(|(series, _)| series));
+                return Ok(bytes);
+            }
+            halvings -= 1;
+        }
+    }
+
+    /// Quanta of displacements (m), velocities (m/s) and stresses (Pa), so many halvings below their usual greatest
+    /// number, and that of the steps of joints.
+    fn quanta(&self, scales: [[f64; 2]; 3], halvings: i32) -> [f64; 4] {
+        let below = |k: usize, halvings: i32| {
+            let [usual, least] = scales[k];
+            (usual * libm::exp2(-f64::from(halvings))).max(least)
+        };
+        let coarser = halvings - COARSER;
+        [below(0, coarser).min(self.size * QUANTUM_OF_SIZE), below(1, coarser), below(2, halvings), 1.0]
+    }
+
+    fn check(&self, time: f64, elements: &Elements) -> Result<(), FilmError> {
         expect("points of elements of a frame", elements.points.len(), self.points.len())?;
         expect("velocities of elements of a frame", elements.velocity.len(), self.middles.len())?;
         expect("stresses of elements of a frame", elements.stress.len(), self.middles.len())?;
         expect("joints of a frame", elements.joints.len(), self.joints)?;
-        let all = elements.points.iter().chain(elements.velocity).chain(elements.joints).flatten();
-        for &value in all.chain(elements.stress.iter().flatten()) {
-            finite(value, time, || "displacement, velocity, stress, opening or slip of an element".to_owned())?;
+        let moved = elements.points.iter().chain(elements.velocity).chain(elements.joints).flatten();
+        for &value in moved.chain(elements.stress.iter().flatten()) {
+            finite(value, time, || "displacement, velocity or stress of an element, or opening or slip".to_owned())?;
         }
-        let motion = self.motion_left(elements.points, numbers);
-        let velocity = self.velocity_left(elements.velocity, numbers);
-        let stress = self.stress_left(elements.stress, numbers);
-        let scale = [usual(elements.points), usual(elements.velocity), usual(elements.stress)];
-        let joints = self.joint_steps(elements.joints);
-        let room = ((ROOM * self.middles.len() as f64) as usize).max(ROOM_LEAST);
-        let [finest, coarsest] = HALVINGS;
-        let (mut halvings, mut made) = (finest, Vec::new());
-        while halvings >= coarsest {
-            let below = |scale: f64, halvings: i32| scale * libm::exp2(-f64::from(halvings));
-            let quanta = [
-                below(scale[0][0], halvings - COARSER).min(self.size * QUANTUM_OF_SIZE).max(scale[0][1]),
-                below(scale[1][0], halvings - COARSER).max(scale[1][1]),
-                below(scale[2][0], halvings).max(scale[2][1]),
-                1.0,
-            ];
-            let wanted = [&motion[..], &velocity, &stress, &joints];
-            made =
-                (0..4).map(|k| Series::next(self.before.as_ref().map(|all| &all[k]), wanted[k], quanta[k])).collect();
-            if packed_length(&body(&made, self.before.is_some())) <= room {
-                break;
-            }
-            halvings -= 1;
-        }
-        let bytes = body(&made, self.before.is_some());
-        self.before = made.into_iter().map(|(series, _)| series).collect::<Vec<_>>().try_into().ok();
-        Ok(bytes)
+        Ok(())
     }
 
     /// What the rigid motion of its block leaves of the displacement of each point (m), axis by axis.

@@ -7,6 +7,7 @@ const JOINT_STEPS = 16; // Steps in which openings and slips double.
 const JOINT_SMALL = 262144; // Size of the model over the opening or slip below which a step is a length.
 const LINE_WIDTHS = [1.4, 6]; // Of joints by opening or slip, from the least to the greatest (px).
 const CROSS = 13; // Half the length of the arm of a cross for the usual greatest stress (px).
+const CROSS_TENSION = 6; // The same at least of tension, so that its bars stand apart (px).
 const CROSS_APART = 30; // Pixels between two crosses.
 const JOINT_REACH = 7; // How near (px) a click must come to a joint.
 
@@ -325,8 +326,9 @@ function drawCrosses(slope, frame, most, theme) {
     taken.add(cell);
     const [major, minor, angle] = principal(...stressOfElement(frame, e, k));
     [[major, angle], [minor, angle + 0.5 * Math.PI]].forEach(([stress, along]) => {
-      const long = CROSS * Math.min(1.5, Math.abs(stress) / most);
-      if (long > 0.7) arms[stress > 0 ? 1 : 0].push([px, py, long * Math.cos(along), -long * Math.sin(along)]);
+      const share = CROSS * Math.min(1.5, Math.abs(stress) / most),
+        long = stress > 0 ? Math.max(share, CROSS_TENSION) : share;
+      if (share > 0.7) arms[stress > 0 ? 1 : 0].push([px, py, long * Math.cos(along), -long * Math.sin(along)]);
     });
   });
   arms.forEach((all, isTension) => {
@@ -335,7 +337,7 @@ function drawCrosses(slope, frame, most, theme) {
       path.moveTo(px - dx, py - dy);
       path.lineTo(px + dx, py + dy);
       if (!isTension) continue;
-      const share = 4 / Math.hypot(dx, dy);
+      const share = 3.5 / Math.hypot(dx, dy);
       for (const end of [-1, 1]) {
         path.moveTo(px + end * dx - dy * share, py + end * dy + dx * share);
         path.lineTo(px + end * dx + dy * share, py + end * dy - dx * share);

@@ -162,7 +162,7 @@ class Slope {
         pen.fillStyle = paint(k);
         pen.fill();
       }
-      if (side > 4 && !over.joints) pen.stroke();
+      if (side > 4 && !over.joints && !over.moved) pen.stroke();
     });
     if (over.joints && frame.edges) this.drawJoints(frame, theme, side);
     if (over.moved) drawMovedJoints(this, frame, over.moved);

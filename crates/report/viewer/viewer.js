@@ -102,8 +102,8 @@ class Viewer {
     const held = by("panel").scrollTop;
     by("panel").replaceChildren(
       ...this.film.of("verdict").slice(-1).map(verdictSection),
-      element("section", { id: "choice" }),
       element("section", { id: "probe" }),
+      element("section", { id: "choice" }),
       ...panelSections(this.film, this.marks, toggle),
       this.settingsSection(),
       caseSection(this.film),
