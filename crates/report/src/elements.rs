@@ -258,8 +258,8 @@ fn usual<const N: usize>(numbers: &[[f64; N]]) -> [f64; 2] {
 }
 
 impl Series {
-    /// Numbers in quanta that are a power of two, at most `quantum` unless those before have such ones, and their bytes.
-    /// A number that is within a quantum of what it was stays.
+    /// Numbers in quanta that are a power of two, at most `quantum`, and their bytes. A number that is within a quantum
+    /// of what it was stays.
     fn next(before: Option<&Self>, wanted: &[Vec<f64>], quantum: f64) -> (Self, Vec<u8>) {
         let ideal = libm::exp2(libm::log2(quantum).floor());
         let kept = before.map(|before| before.quantum).filter(|kept| [ideal, 0.5 * ideal].contains(kept));

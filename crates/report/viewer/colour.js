@@ -148,7 +148,10 @@ function colourOf({ name, meaning, unit, range }) {
 // there are many, so that a single chip does not take all colours.
 function rangeOf(film, colour, frames, base) {
   if (colour.range) return colour.range;
-  if (colour.ofJoints) return rangeOfParts(frames, (frame) => frame.elements && numbersOfJoints(frame, colour.key), true);
+  if (colour.ofJoints) {
+    const of = (frame) => frame.elements && numbersOfJoints(frame, colour.key);
+    return rangeOfParts(frames, of, true);
+  }
   if (OF_ELEMENTS[colour.key] && frames.some((frame) => frame.elements)) {
     const of = (frame) => numbersOfElements(frame, colour.key, film.under(base, frame.shape));
     return rangeOfParts(frames, of, colour.logarithmic);

@@ -1,7 +1,7 @@
 // Elements, the parts of blocks with a stress of their own, and joints: reading them, their numbers, and drawing.
 //
-// A film holds what the rigid motion and the mean stress of its block leave of the numbers of an element, in quanta, and
-// of most frames only what has changed since the one before.
+// A film holds what the rigid motion and the mean stress of its block leave of the numbers of an element, in quanta,
+// and mostly only what has changed since those before.
 
 const JOINT_STEPS = 16; // Steps in which openings and slips double.
 const JOINT_SMALL = 262144; // Size of the model over the opening or slip below which a step is a length.

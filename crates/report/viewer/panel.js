@@ -275,8 +275,8 @@ function exactElements(film) {
   const most = (name) => Math.max(...film.frames.map(({ elements }) => elements?.[name].quantum ?? 0));
   return (
     `Stresses of elements are within ${withUnit(most("stress"), "Pa")}, velocities within ` +
-    `${withUnit(most("velocity"), "m/s")}, at rest closer: a probe shows it. They stand in every third frame and at the ` +
-    "end of each stage; between these, how they differ from the mean of their block stays. Openings and slips of joints " +
-    `are within 5 % or ${withUnit(film.shape.size / JOINT_SMALL / JOINT_STEPS, "m")}.`
+    `${withUnit(most("velocity"), "m/s")}, at rest closer: a probe shows it. They stand in every third frame and at ` +
+    "the end of each stage; between these, how they differ from the mean of their block stays. Openings and slips of " +
+    `joints are within 5 % or ${withUnit(film.shape.size / JOINT_SMALL / JOINT_STEPS, "m")}.`
   );
 }

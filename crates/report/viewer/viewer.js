@@ -56,7 +56,7 @@ class Viewer {
     while (this.marks.length < marked.length) this.marks.push(this.marks.length === 0);
     by("timeline").hidden = film.frames.length < 2 && !film.rows.time.length;
     [by("slider").min, by("slider").max] = [film.start, film.end];
-    this.base = undefined;
+    this.base = this.greatest = undefined;
     this.buildPanel();
     this.buildCharts();
     this.range();
@@ -337,7 +337,8 @@ class Viewer {
     }
     const { steps } = this.steps,
       parts = steps && { steps, colours: RAMPS[colour.ramp], words: WORDS[colour.ramp] };
-    this.greatest ??= rangeOfParts(this.film.frames, (shown) => numbersOfElements(shown, "shear"), false)[1];
+    if (settings.crosses)
+      this.greatest ??= rangeOfParts(this.film.frames, (shown) => numbersOfElements(shown, "shear"), false)[1];
     return {
       elements: colour.ofJoints ? null : parts,
       moved: colour.ofJoints ? parts : null,
