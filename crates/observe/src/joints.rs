@@ -122,10 +122,14 @@ impl Joints {
         edges.flat_map(first).copied().collect()
     }
 
-    /// Opening and slip (m) of all pieces since the start, those of excavated blocks too.
+    /// Opening and slip (m) of all pieces since the start, in their order; 0 of those of excavated blocks.
     pub fn moved(&self, simulation: &Simulation) -> Vec<[f64; 2]> {
+        let (boundary, removed) = (&simulation.model().boundary, &simulation.state().removed);
         let positions = simulation.positions();
         let moved = |piece: &Facing| {
+            if piece.edges.into_iter().any(|edge| removed[boundary.block[edge]]) {
+                return [0.0; 2];
+            }
             let JointPiece { opening, slip, .. } = seen(simulation, &positions, piece);
             [opening, slip]
         };
