@@ -254,7 +254,8 @@ class Raster {
       for (let k = 0; k + 1 < count; k += 2) {
         const left = Math.max(0, Math.ceil(crossings[k] - 0.5)),
           right = Math.min(width, Math.ceil(crossings[k + 1] - 0.5));
-        if (right > left) pixels.fill(colour, row * width + left, row * width + right);
+        // Faster than `fill` on some ten pixels.
+        for (let at = row * width + left; at < row * width + right; at++) pixels[at] = colour;
       }
     }
   }

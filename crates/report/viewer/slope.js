@@ -1,6 +1,7 @@
 // The slope on its canvas: camera, drawing, and what lies under a pointer. Places are in metres from the film's origin.
 
 const TINY = 24; // Pixels below which a block is drawn by its corners alone.
+const AT_A_TIME = 16; // Blocks of one colour that are filled together.
 const REACH = 12; // How near (CSS pixels) a click must come to a monitor.
 const FOOT = 30; // Height of the length bar with its label (px).
 
@@ -120,16 +121,16 @@ class Slope {
 
   // Begins a path with the loops of a block, and returns whether any of it is in sight.
   //
-  // Every block is a path of its own: browsers fill ten thousand small paths in some 30 ms, and one path with as many
-  // loops in a second.
-  trace(block) {
+  // Every block is a path of its own, unless it is joined to the one before: browsers fill ten thousand small paths in
+  // some 30 ms, and one path with as many loops in a second.
+  trace(block, joined = false) {
     const { x, y, pen } = this,
       { scale, shiftX, shiftY, west, east, south, north } = this.view,
       [left, right, low, high] = this.bounds(block);
     if (right < west || left > east || high < south || low > north) return false;
     // The bending of a side is not visible on a block of a few pixels.
     const wanted = Math.max(right - left, high - low) * scale < TINY ? this.film.shape.real : null;
-    pen.beginPath();
+    if (!joined) pen.beginPath();
     for (const [first, end] of block.loops) {
       let begun = false;
       for (let c = first; c < end; c++) {
@@ -152,17 +153,19 @@ class Slope {
     this.look();
     // The usual side of a block on the screen (pixels): outlines of tiny blocks would only darken the picture.
     const side = film.shape.side * this.camera.scale;
+    const ofLines = over.joints || over.moved;
     if (over.elements) drawElements(this, frame, over.elements);
+    if (ofLines) this.fillAlike(frame, theme.line);
     pen.strokeStyle = theme.edge;
     pen.lineWidth = side > 14 ? 1 : 0.5;
     pen.lineJoin = "bevel";
     film.shape.blocks.forEach((block, k) => {
-      if (frame.removed[k] || (over.elements && side <= 4) || !this.trace(block)) return;
+      if (frame.removed[k] || ofLines || (over.elements && side <= 4) || !this.trace(block)) return;
       if (!over.elements) {
         pen.fillStyle = paint(k);
         pen.fill();
       }
-      if (side > 4 && !over.joints && !over.moved) pen.stroke();
+      if (side > 4) pen.stroke();
     });
     if (over.joints && frame.edges) this.drawJoints(frame, theme, side);
     if (over.moved) drawMovedJoints(this, frame, over.moved);
@@ -173,6 +176,20 @@ class Slope {
     if (film.shape.starts) drawProbe(this, frame, over, theme);
     if (over.cursor) this.drawCursor(over.cursor, theme);
     over.monitors.forEach((monitor, k) => this.drawMonitor(monitor, k === over.monitor, theme));
+  }
+
+  // Fills all blocks in one colour, some at a time.
+  fillAlike(frame, colour) {
+    const { pen } = this;
+    pen.fillStyle = colour;
+    pen.beginPath();
+    let count = 0;
+    this.film.shape.blocks.forEach((block, k) => {
+      if (frame.removed[k] || !this.trace(block, true) || ++count % AT_A_TIME) return;
+      pen.fill();
+      pen.beginPath();
+    });
+    pen.fill();
   }
 
   // Edges by state; slipping ones and bridges on top. Dashes need blocks of some size to be seen.

@@ -346,10 +346,10 @@ class Viewer {
     };
   }
 
-  // The colour of each block.
+  // The colour of each block; none where all are alike.
   paint(frame, base) {
     const { colour, theme, film } = this;
-    if (colour.key === "joint" || colour.ofJoints) return () => theme.line;
+    if (colour.key === "joint" || colour.ofJoints) return null;
     if (colour.key === "block")
       return (k) =>
         film.shape.blocks[k].fixed ? theme.line : BLOCK_FILLS[film.shape.blocks[k].id % BLOCK_FILLS.length];
