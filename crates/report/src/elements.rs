@@ -132,8 +132,8 @@ impl Meshes {
         let mut before = 0;
         for ring in &block.mesh.elements {
             let there = ring.iter().filter(|&&at| (at as usize) < places.len()).count();
-            expect("points of an element", there, ring.len().clamp(3, usize::from(u8::MAX)))?;
-            planes.sides.push(ring.len() as u8);
+            expect("points of an element", there, ring.len().max(3))?;
+            push_integer(ring.len() as i64, &mut planes.sides);
             for &at in ring {
                 push_integer(i64::from(at) - before, &mut planes.rings);
                 before = i64::from(at);

@@ -30,7 +30,7 @@ function readMesh(reader, shape) {
   }
   shape.points = shape.corners + points;
   shape.elements = elements;
-  const sides = reader.take(elements);
+  const sides = reader.integers(elements);
   shape.starts = new Uint32Array(elements + 1);
   sides.forEach((count, e) => (shape.starts[e + 1] = shape.starts[e] + count));
   shape.ring = Uint32Array.from(reader.integers(shape.starts[elements]));
@@ -216,12 +216,14 @@ function rangeOfParts(frames, of, logarithmic) {
 // Fills polygons in flat colours, pixel by pixel: ten thousand small paths take a canvas twice the time between two
 // pictures of the screen, and leave a rim of the paper between neighbours.
 class Raster {
+  // Where the sides of a polygon cross a line of pixels.
+  crossings = new Float64Array(4096);
+
   begin(width, height) {
     if (this.image?.width !== width || this.image.height !== height) {
       this.image = new ImageData(width, height);
       this.pixels = new Uint32Array(this.image.data.buffer);
     } else this.pixels.fill(0);
-    this.crossings = new Float64Array(64);
   }
 
   // The polygon of the points `ring[from..to]` at the pixels x, y.

@@ -391,6 +391,9 @@ class Viewer {
     this.shownChoice = shown;
     by("choice").replaceWith(choiceSection(film, this.choice, frame));
     by("probe").replaceWith(probeSection(this.choice, frame));
+    const heads = document.querySelectorAll("#probe h2, #choice h2"),
+      found = this.cursor ? Array.from(heads, (head) => head.textContent).join(", ") : "";
+    if (by("found").textContent !== found) by("found").textContent = found;
   }
 
   showScale() {
@@ -612,9 +615,6 @@ class Viewer {
       Math.max(0, Math.min(clientHeight, py + far * dy)),
     ];
     this.click(...this.cursor);
-    by("found").textContent = [by("choice"), by("probe")]
-      .flatMap((part) => [...part.querySelectorAll("h2")].map((head) => head.textContent))
-      .join(", ");
   }
 
   key(event) {

@@ -118,13 +118,13 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn frame(&mut self, simulation: &Simulation) -> io::Result<()> {
+        let (simulation, time) = (&*simulation.cut_ahead(), simulation.time());
         let stage = simulation.state().stage;
-        let (since, before) = self.since.unwrap_or((ELEMENTS_EVERY, stage));
-        if since >= ELEMENTS_EVERY || before != stage {
-            return self.frame_at(simulation, simulation.time());
-        }
-        self.since = Some((since + 1, stage));
-        self.blocks_at(&simulation.cut_ahead(), simulation.time())
+        self.since = self.since.filter(|&(since, before)| since < ELEMENTS_EVERY && before == stage);
+        self.since = self.since.map(|(since, stage)| (since + 1, stage));
+        self.blocks_at(simulation, time)?;
+        // Also where blocks have broken since the last frame.
+        if self.since.is_none() { self.elements_at(simulation, time) } else { Ok(()) }
     }
 
     /// Appends the model as it is now, with its elements, at a place of the slider.
@@ -134,6 +134,11 @@ impl Film {
     pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         let simulation = &*simulation.cut_ahead();
         self.blocks_at(simulation, time)?;
+        self.elements_at(simulation, time)
+    }
+
+    /// Appends the elements of a model whose blocks the last frame has.
+    fn elements_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         self.since = Some((1, simulation.state().stage));
         let Some(meshes) = &self.meshes else { return Ok(()) };
         meshes.write(simulation, time, &mut self.writer).map_err(refused)
