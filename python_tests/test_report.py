@@ -207,7 +207,7 @@ def test_the_tabulator_reaches_every_control_and_shows_where_it_is(report):
 def test_the_picture_shows_rock_and_sky(report, results, theme, tmp_path):
     report.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
     report.open((results / "report.html").as_uri())
-    report.press("4")
+    report.press("5")
     picture = Image.open(io.BytesIO(report.screenshot())).convert("RGB")
 
     def pixel(x: float, y: float) -> tuple[int, int, int]:
