@@ -201,7 +201,7 @@ impl Meshes {
         Ok(())
     }
 
-    /// What the rigid motion of its block leaves of the displacement of each point (m), axis by axis.
+    /// The part of the displacement of each point (m) that the rigid motion of its block leaves, axis by axis.
     fn motion_left(&self, points: &[[f64; 2]], numbers: &[Vec<f32>]) -> [Vec<f64>; 2] {
         let left = |(&(block, [a, b]), moved): (&(usize, [f64; 2]), &[f64; 2])| {
             let [x, y, turn] = [0, 1, 2].map(|k| f64::from(numbers[k][block]));
@@ -222,7 +222,7 @@ impl Meshes {
         split(self.middles.iter().zip(velocity).map(left))
     }
 
-    /// What the mean stress of its block leaves of the stress of each element (Pa).
+    /// The part of the stress of each element (Pa) that the mean stress of its block leaves.
     fn stress_left(&self, stress: &[[f64; 3]], numbers: &[Vec<f32>]) -> [Vec<f64>; 3] {
         let left = |(&(block, _), stress): (&(usize, [f64; 2]), &[f64; 3])| {
             [0, 1, 2].map(|k| stress[k] - f64::from(numbers[self.from[3 + k]][block]))

@@ -452,7 +452,7 @@ function numbersOfJoint(frame, j) {
   ];
 }
 
-// What a probe reads beside its block, in a frame.
+// Numbers that a probe reads beside those of its block, in a frame.
 function probeSection({ block, element: e, joint }, frame) {
   const made = element("section", { id: "probe" });
   if (!frame.elements) return made;

@@ -307,7 +307,7 @@ class Slope {
     pen.fillText(monitor.name, x + 9, y - 7);
   }
 
-  // What lies under a pixel: a monitor, or a block with an element, and a joint near by.
+  // The monitor that lies under a pixel, or a block with an element, and a joint near by.
   pick(px, py, frame, monitors) {
     const near = monitors.findIndex((monitor) => {
       const [x, y] = this.toScreen(monitor.x, monitor.y);

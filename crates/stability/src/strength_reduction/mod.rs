@@ -314,13 +314,10 @@ pub fn factor_of_safety(
     };
     let (mut series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
     trials.down_to_whole_bars(&mut series, &setting, range);
-    let mechanism = toppling::mechanism(&base, &series);
+    let (mechanism, free_area) = (toppling::mechanism(&base, &series), base.free_area());
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
-    let SecondOpinion { bound, bracket, ends } = opinion;
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
-    let free_area = base.free_area();
-    let at_rest = Ended { simulation: base.simulation, begun: None };
-    let Ended { simulation, begun } = failed.unwrap_or(at_rest);
+    let Ended { simulation, begun } = failed.unwrap_or(Ended { simulation: base.simulation, begun: None });
     let mut reduction = Reduction {
         trials: series.trials,
         low: series.low,
@@ -332,9 +329,9 @@ pub fn factor_of_safety(
         lost,
         rest: rest.effort,
         free_area,
-        bound,
-        bracket,
-        ends,
+        bound: opinion.bound,
+        bracket: opinion.bracket,
+        ends: opinion.ends,
         warnings: rest.warnings,
         simulation,
         begun,
