@@ -307,10 +307,13 @@ function drawMovedJoints(slope, { shape }, { steps, colours }) {
     pen.strokeStyle = colours[step];
     pen.lineWidth = thin + ((wide - thin) * step) / (STEPS - 1);
     pen.beginPath();
+    let last = null;
     for (const c of corners) {
       const next = shape.after[c];
-      pen.moveTo(x[c] * scale + shiftX, shiftY - y[c] * scale);
+      // Neighbours are one line.
+      if (c !== last) pen.moveTo(x[c] * scale + shiftX, shiftY - y[c] * scale);
       pen.lineTo(x[next] * scale + shiftX, shiftY - y[next] * scale);
+      last = next;
     }
     pen.stroke();
   });
