@@ -182,15 +182,15 @@ fn noise_stays_within_its_room_and_calm_takes_none() {
         length = std::fs::metadata(&path).unwrap().len();
         (length - before) as usize
     };
-    let noise = Numbers::of(&moment, &mut dice, 0.3);
+    let noise = Numbers::of(&moment, &mut dice, 0.05);
     let room = (1.5 * elements as f64) as usize + 16;
     assert!(grown(&mut film, &noise) <= room);
-    let other = Numbers::of(&moment, &mut dice, 0.3);
+    let other = Numbers::of(&moment, &mut dice, 0.05);
     let again = grown(&mut film, &other);
     assert!(again <= room && again > room / 4, "{again} of {room}");
-    grown(&mut film, &other);
-    let calm = grown(&mut film, &other);
-    assert!(calm < room / 4, "the same once more takes {calm} of {room}");
+    // Calm makes numbers finer, up to the finest; then nothing is left to say.
+    let calm: Vec<usize> = (0..8).map(|_| grown(&mut film, &other)).collect();
+    assert!(calm.iter().all(|&bytes| bytes <= room) && calm[7] < room / 50, "{calm:?} of {room}");
 }
 
 #[test]
