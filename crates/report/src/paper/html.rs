@@ -5,6 +5,7 @@ use super::input::input_chapter;
 use super::parts::{chapter, text};
 use super::records::Records;
 use super::results::{bound_chapter, factor_chapter, probability_chapter, run_chapter};
+use super::sweep::sweep_chapter;
 use super::table::text_html;
 
 const STYLE: &str = include_str!("style.css");
@@ -18,6 +19,7 @@ pub fn report_html(records: &Records) -> String {
         factor_chapter(records),
         bound_chapter(records),
         probability_chapter(records),
+        sweep_chapter(records),
         warnings(records),
         missing(records),
         case_file(records),
