@@ -191,18 +191,12 @@ impl<'a> Answers<'a> {
     }
 
     /// Counts what the store has; rows that are to be worked out again do not count.
-    fn begin(
-        &self,
-        output: SampleOutput,
-        found: &[Option<Row>],
-        mut decides: Option<&mut Tally>,
-    ) -> EnsembleProgress {
+    fn begin(&self, output: SampleOutput, found: &[Option<Row>], mut decides: Option<&mut Tally>) -> EnsembleProgress {
         let limit = self.loaded.case.ensemble.limit;
         let Tally { answered, below } = self.tally;
         let (done, wanted) = self.earlier.map_or((0, found.len()), |earlier| (earlier, self.values.len()));
         let begun = Instant::now();
-        let mut progress =
-            EnsembleProgress { output, begun, stored: 0, done, wanted, answered, below, slowest: None };
+        let mut progress = EnsembleProgress { output, begun, stored: 0, done, wanted, answered, below, slowest: None };
         let kept = found.iter().flatten().filter(|row| row.is_done() || !self.options.retry_failed);
         for row in kept {
             progress.note(row, decides.as_deref_mut().map(|tally| (tally, limit)), None);
