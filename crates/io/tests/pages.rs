@@ -42,10 +42,11 @@ fn strangers(table: &Table, path: &str, known: &BTreeSet<String>) -> Vec<String>
         let place = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
         let named = format!("{path}.NAME");
         let places = [place.clone(), format!("{place}[]"), named];
-        let Some(place) = places.into_iter().find(|place| known.contains(place)) else { return vec![place] };
+        let holds_more = |place: &str| known.iter().any(|other| other.starts_with(&format!("{place}.")));
+        let is_known = |place: &String| known.contains(place) || holds_more(place);
+        let Some(place) = places.into_iter().find(is_known) else { return vec![place] };
         // A number, a list of numbers or of names, or a table of names that are free, such as levels of heads.
-        let below = format!("{place}.");
-        if !known.iter().any(|other| other.starts_with(&below)) {
+        if !holds_more(&place) {
             return Vec::new();
         }
         match value {
