@@ -311,7 +311,10 @@ fn a_stage_that_failed_is_named_with_its_mechanism() {
 
 /// A sweep that `enmm sweep` has made of one key.
 fn swept() -> Value {
-    let sample = |angle: f64, factor: f64, status: &str| json!({ "values": { "joint_law.fault.friction_deg": angle }, "level_tops": factor, "status": status });
+    let sample = |angle: f64, factor: f64, status: &str| {
+        let values = json!({ "joint_law.fault.friction_deg": angle });
+        json!({ "values": values, "level_tops": factor, "status": status })
+    };
     json!({
         "title": "Bench slope", "version": "0.1.0", "case_file": "slope.toml", "case_hash": "0123456789abcdef",
         "settings": [], "kind": "curve", "output": "level_tops", "limit": 1.0,
@@ -346,7 +349,7 @@ fn a_sweep_of_changes_one_by_one_has_their_effects() {
     record["kind"] = json!("tornado");
     record["crossings"] = Value::Null;
     record["of_the_case"] = json!(1.1111);
-    record["effects"] = json!([{ "key": "joint_law.fault.friction_deg", "outputs": [[20.0, 0.8123], [30.0, 1.2345]], "range": 0.4222 }]);
+    record["effects"] = json!([{ "key": "angle", "outputs": [[20.0, 0.8123], [30.0, 1.2345]], "range": 0.4222 }]);
     let shown = html(folder_with(&[("sweep.json", &record)]).path());
     for part in ["1.1111\">1.11", "0.4222\">0.422", "Each key alone, the greatest effect first"] {
         assert!(shown.contains(part), "{part}");

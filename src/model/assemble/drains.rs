@@ -4,8 +4,6 @@ use crate::flow::{self, FlowNet};
 use crate::geometry::Point;
 use crate::model::case::{self, Case, Invalid};
 
-use super::rain::Owners;
-
 /// Lines of the drains of a case.
 pub(super) fn lines(case: &Case) -> Vec<Vec<Point>> {
     case.drains.iter().map(|drain| drain.points.iter().map(|&point| Point::from(point)).collect()).collect()
@@ -18,7 +16,7 @@ pub(super) fn drains(
     lines: &[Vec<Point>],
     tolerance: f64,
 ) -> Result<Vec<flow::Drain>, Invalid> {
-    let mut owners = Owners::new(net);
+    let mut owner: Vec<Option<usize>> = vec![None; net.places.len()];
     let mut drains = Vec::new();
     for (k, (drain, line)) in case.drains.iter().zip(lines).enumerate() {
         let case::Drain { name, active, pump, .. } = drain;
@@ -29,9 +27,16 @@ pub(super) fn drains(
             let message = "crosses no joint, so that it drains nothing: lead it through joints that conduct water";
             return Err(Invalid { key, message: message.to_owned() });
         }
-        owners.give(&key, nodes.iter().copied(), k, |at, other| {
-            format!("crosses the joint at {at} where drain {:?} does too; move one of both", case.drains[other].name)
-        })?;
+        for &node in &nodes {
+            if let Some(other) = owner[node as usize].replace(k) {
+                let at = net.places[node as usize];
+                let message = format!(
+                    "crosses the joint at ({:.6}, {:.6}) m where drain {:?} does too; move one of both",
+                    at.x, at.y, case.drains[other].name
+                );
+                return Err(Invalid { key, message });
+            }
+        }
         let mut acts = *active;
         let of_stage = |stage: &case::Stage| {
             acts |= stage.drain.contains(name);

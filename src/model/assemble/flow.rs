@@ -10,7 +10,6 @@ use crate::state::{Model, Water};
 
 use super::joints::Joints;
 use super::ports::Faces;
-use super::rain::{Owners, by_stage};
 
 /// The net of joints, if water flows in them.
 pub(super) fn net(
@@ -71,7 +70,7 @@ fn apertures(case: &Case) -> Vec<f64> {
 
 /// The heads with their nodes and their levels in each stage.
 fn heads(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<HeldHead>, Invalid> {
-    let mut owners = Owners::new(net);
+    let mut owner: Vec<Option<usize>> = vec![None; net.places.len()];
     let mut heads = Vec::new();
     for (k, head) in case.heads.iter().enumerate() {
         let Head { name, edge, level } = head;
@@ -87,12 +86,18 @@ fn heads(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<HeldHead>, In
             );
             return Err(invalid(&key, message));
         }
-        owners.give(&key, nodes.iter().copied(), k, |at, other| {
-            let other = &case.heads[other].name;
-            let remedy = "it can have one head only: shorten one of both segments";
-            format!("meets the joint at {at} that head {other:?} holds too, and {remedy}")
-        })?;
-        let levels = by_stage(case, *level, |stage| stage.heads.get(name));
+        for &node in &nodes {
+            if let Some(other) = owner[node as usize].replace(k) {
+                let at = net.places[node as usize];
+                let message = format!(
+                    "meets the joint at ({:.6}, {:.6}) m that head {:?} holds too, and it can have one head only: \
+                     shorten one of both segments",
+                    at.x, at.y, case.heads[other].name
+                );
+                return Err(invalid(&key, message));
+            }
+        }
+        let levels = super::rain::by_stage(case, *level, |stage| stage.heads.get(name));
         heads.push(HeldHead { name: name.clone(), nodes, levels });
     }
     Ok(heads)

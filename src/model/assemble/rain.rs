@@ -6,7 +6,7 @@ use crate::model::case::{Case, Invalid, Rain, Stage};
 
 /// Rain with its outcrops, the ground that drains to each and its rates in each stage.
 pub(super) fn rains(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<FallingRain>, Invalid> {
-    let mut owners = Owners::new(net);
+    let mut owner: Vec<Option<usize>> = vec![None; net.places.len()];
     let mut rains = Vec::new();
     for (k, Rain { name, edge, rate }) in case.rains.iter().enumerate() {
         let key = format!("rain[{k}].edge");
@@ -19,10 +19,16 @@ pub(super) fn rains(case: &Case, net: &FlowNet, tolerance: f64) -> Result<Vec<Fa
             );
             return Err(Invalid { key, message });
         }
-        owners.give(&key, outcrops.iter().map(|(node, _)| *node), k, |at, other| {
-            let other = &case.rains[other].name;
-            format!("meets the outcrop at {at} on which rain {other:?} falls too: shorten one of both segments")
-        })?;
+        for (node, _) in &outcrops {
+            if let Some(other) = owner[*node as usize].replace(k) {
+                let at = net.places[*node as usize];
+                let message = format!(
+                    "meets the outcrop at ({:.6}, {:.6}) m on which rain {:?} falls too: shorten one of both segments",
+                    at.x, at.y, case.rains[other].name
+                );
+                return Err(Invalid { key, message });
+            }
+        }
         let rates = by_stage(case, *rate, |stage| stage.rain.get(name));
         rains.push(FallingRain { name: name.clone(), outcrops, rates });
     }
@@ -47,37 +53,6 @@ fn shares(net: &FlowNet, [a, b]: [Point; 2], tolerance: f64) -> Vec<(u32, f64)> 
         (*node, (borders.get(k).copied().unwrap_or(1.0) - from) * plan)
     };
     nodes.iter().enumerate().map(share).collect()
-}
-
-/// The one head, rain or drain that each node of a net belongs to.
-pub(super) struct Owners<'a>(&'a [Point], Vec<Option<usize>>);
-
-impl<'a> Owners<'a> {
-    /// No node belongs to any.
-    pub fn new(net: &'a FlowNet) -> Self {
-        Self(&net.places, vec![None; net.places.len()])
-    }
-
-    /// Gives nodes to the `k`-th one, whose key this is.
-    ///
-    /// # Errors
-    /// One belongs to another; the message is made of its place and the number of the other.
-    pub fn give(
-        &mut self,
-        key: &str,
-        nodes: impl Iterator<Item = u32>,
-        k: usize,
-        message: impl Fn(String, usize) -> String,
-    ) -> Result<(), Invalid> {
-        for node in nodes {
-            if let Some(other) = self.1[node as usize].replace(k) {
-                let at = self.0[node as usize];
-                let message = message(format!("({:.6}, {:.6}) m", at.x, at.y), other);
-                return Err(Invalid { key: key.to_owned(), message });
-            }
-        }
-        Ok(())
-    }
 }
 
 /// A number at the start of each stage, which goes on until a stage gives another.

@@ -43,5 +43,5 @@ fn case_file(records: &Records) -> String {
     }
     let name = text(&record.json["case_file"]);
     let content = format!("<p>{}</p>\n<pre>{}</pre>\n", text_html(name), text_html(written));
-    chapter("Case file", &content).replacen("<section>", "<section class=\"page\">", 1)
+    chapter("Case file", &content)
 }
