@@ -311,7 +311,7 @@ def sweep(
     options |= {"jobs": whole("jobs", jobs, 1, 1024), "store": None if store is None else path_of("store", store)}
     options |= search_options(low, high, tolerance, least_area)
     options |= {"retry-failed": retry_failed, "force": overwrite}
-    changes = [f"{key}={','.join(_value(key, value) for value in those)}" for key, those in values.items()]
+    changes = [f"{key}={','.join(_numbers(key, those))}" for key, those in values.items()]
     if not changes:
         raise invalid("values: is empty, must have at least 1 key; give one with its numbers")
     found = Sweep(None) if output is None else None
@@ -323,10 +323,15 @@ def sweep(
     return found
 
 
-def _value(key: str, value: Any) -> str:
-    """A number with all of its digits; whole ones as such, since seeds and counts take no others."""
-    number(f"values[{key!r}]", value)
-    return str(int(value)) if float(value).is_integer() else repr(float(value))
+def _numbers(key: str, values: Iterable[Any]) -> list[str]:
+    """Numbers with all of their digits, each once; whole ones as such, since seeds and counts take no others."""
+    name = f"values[{key!r}]"
+    found = [str(int(value)) if number(name, value).is_integer() else repr(number(name, value)) for value in values]
+    twice = next((text for k, text in enumerate(found) if text in found[:k]), None)
+    if not found or twice is not None:
+        what = "is empty, must have at least 1 number" if not found else f"has {twice} twice; give each number once"
+        raise invalid(f"{name}: {what}")
+    return found
 
 
 def _absent(path: Path) -> None:
