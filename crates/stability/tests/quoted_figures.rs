@@ -23,6 +23,12 @@ fn limit(text: &str) -> f64 {
     bound(&case(text)).unwrap_or_else(|e| panic!("{e}")).associated.factor.value()
 }
 
+/// The same without the cohesion of joints that open.
+fn bare_limit(text: &str) -> f64 {
+    let found = bound(&case(text)).unwrap_or_else(|e| panic!("{e}"));
+    found.bare.expect("joints that open").collapse.factor.value()
+}
+
 /// Asserts that a page has a text with figures.
 fn assert_quotes(page: &str, text: &str) {
     assert!(page.contains(text), "the page has no {text:?}");
@@ -35,21 +41,20 @@ fn number_after(page: &str, text: &str) -> f64 {
     digits.trim_end_matches('.').parse().unwrap_or_else(|error| panic!("{text:?}: {error}"))
 }
 
-/// Limit analysis is exact where the wedge slides as one, and so has the factors of active and passive bolts that
-/// strength reduction finds. Bars that the rock stretches yield before the slope goes, by 0.28 m: their factor is that
-/// of passive ones, of which a page said 1.44.
+/// Limit analysis is exact where the wedge slides as one, but for the cohesion of the crack behind it, which opens: so it
+/// has the factors of active and passive bolts. Bars that the rock stretches yield before the slope goes, by 0.28 m:
+/// their factor is that of passive ones but for the tolerance of the search, of which a page said 1.44.
 #[test]
 fn the_page_on_supports_has_the_factors_of_the_new_slope() {
     let page = page("supports.md");
     let text = template("slope");
     let with = |support: &str| text.replace("count = 3\n", &format!("count = 3\nsupport = \"{support}\"\n"));
     let bare = without(&text, "[[stage]]\nname = \"bolts\"", "[[monitor]]");
-    let [none, active, passive] = [bare, with("active"), with("passive")].map(|text| limit(&text));
+    let [none, active, passive] = [bare, with("active"), with("passive")].map(|text| bare_limit(&text));
     assert_quotes(&page, &format!("the factor is {none:.2} without bolts, {active:.2} with active"));
-    let quoted = number_after(&page, "with active and ");
-    assert!((quoted - passive).abs() < 0.03, "passive: {quoted}, and {passive} by limit analysis");
+    assert_quotes(&page, &format!("with active and {passive:.2} with passive ones"));
     let stretched = number_after(&page, "where the rock stretches them it is ");
-    assert!(stretched <= quoted && stretched > quoted - 0.02, "{stretched} beside {quoted}");
+    assert!((stretched / passive - 1.0).abs() < 1e-2, "{stretched} beside {passive}");
 }
 
 /// The wedge of `plane_slide.toml` by Hoek and Bray, whose factors its own test holds.
