@@ -2,7 +2,6 @@
 //! tornado.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use enmm::model::case::EnsembleOutput;
@@ -13,9 +12,9 @@ use enmm_run::{
 };
 
 use crate::case::CaseArguments;
-use crate::run::{directory_for, print_record, results_folder};
-use crate::workers::{WorkArguments, Workers, warn};
-use crate::{BAD_INPUT, OrFail, Outcome, print_line};
+use crate::run::{directory_for, results_folder};
+use crate::workers::{WorkArguments, Workers, report};
+use crate::{BAD_INPUT, OrFail, Outcome};
 
 /// Samples of a curve that are printed.
 const PRINTED: usize = 50;
@@ -87,7 +86,8 @@ fn work_out(arguments: &Arguments) -> Outcome {
     let directory = results_folder(arguments.output.as_ref(), directory_for(&case.path, "sweep"), work.force)?;
     let workers = Workers { case, loaded: &loaded, work, quiet: arguments.json };
     let (found, options) = workers.find(directory, |options, ask, hear| find(&loaded, &sweep, options, ask, hear))?;
-    report(arguments, &found, &options)
+    let json = arguments.json.then_some((&*options.directory, "sweep.json"));
+    report(json, || table(&found, &options), found.rows.len(), [&found.failed, &found.doubtful])
 }
 
 /// The sweep that the arguments ask for.
@@ -105,16 +105,6 @@ fn load(case: &CaseArguments, sweep: &Sweep) -> Result<LoadedCase, CaseError> {
     let loaded = case.load()?;
     sweep.settings().iter().try_for_each(|settings| case.load_with(settings).map(drop))?;
     Ok(loaded)
-}
-
-fn report(arguments: &Arguments, found: &SweepResult, options: &EnsembleOptions) -> Outcome {
-    if arguments.json {
-        print_record(&options.directory, "sweep.json")?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    print_line(&table(found, options));
-    warn(found.rows.len(), &found.failed, &found.doubtful);
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Results, as lines of a name and a text.

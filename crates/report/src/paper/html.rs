@@ -5,6 +5,7 @@ use super::input::input_chapter;
 use super::parts::{chapter, text};
 use super::records::Records;
 use super::results::{bound_chapter, factor_chapter, probability_chapter, run_chapter};
+use super::sweep::sweep_chapter;
 use super::table::text_html;
 
 const STYLE: &str = include_str!("style.css");
@@ -18,6 +19,7 @@ pub fn report_html(records: &Records) -> String {
         factor_chapter(records),
         bound_chapter(records),
         probability_chapter(records),
+        sweep_chapter(records),
         warnings(records),
         missing(records),
         case_file(records),
@@ -41,5 +43,5 @@ fn case_file(records: &Records) -> String {
     }
     let name = text(&record.json["case_file"]);
     let content = format!("<p>{}</p>\n<pre>{}</pre>\n", text_html(name), text_html(written));
-    chapter("Case file", &content).replacen("<section>", "<section class=\"page\">", 1)
+    chapter("Case file", &content)
 }
