@@ -16,6 +16,7 @@ mod issue_rock_without_tension_never_rested;
 mod issue_the_mesh_decided_about_an_end;
 mod kinematics;
 mod limit_analysis;
+mod quiet_edges;
 mod rock_that_breaks;
 mod searches_begin_anywhere;
 mod seepage;
