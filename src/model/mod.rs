@@ -13,6 +13,7 @@ pub mod mechanism;
 mod observe;
 mod openings;
 pub mod overlap;
+mod parted;
 mod rest;
 mod restless;
 mod seepage;
@@ -36,6 +37,7 @@ pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{
     BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,
 };
+pub use parted::Parted;
 pub use restless::Restless;
 pub use seepage::FlowSurvey;
 pub use simulation::Simulation;

@@ -15,7 +15,7 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
-use crate::flow::FlowRecord;
+use crate::flow::{FlowRecord, PartedRecord};
 use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
@@ -103,6 +103,9 @@ pub struct Summary {
     /// Water that went through the joints in each stage.
     #[serde(skip_serializing_if = "<[FlowRecord]>::is_empty")]
     pub flow: Vec<FlowRecord>,
+    /// Wet joints that have parted, of a case in which water flows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow_parted: Option<PartedRecord>,
     /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
@@ -464,6 +467,7 @@ impl Summary {
             breaks: BreakRecord::all(simulation),
             worst_sections: SectionRecord::worst(simulation),
             flow: FlowRecord::all(simulation),
+            flow_parted: PartedRecord::of(simulation),
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             trace_ends: TraceEndRecord::all(simulation.built()),

@@ -17,6 +17,7 @@ mod issue_the_mesh_decided_about_an_end;
 mod kinematics;
 mod limit_analysis;
 mod quoted_figures;
+mod quiet_edges;
 mod rock_that_breaks;
 mod searches_begin_anywhere;
 mod seepage;
