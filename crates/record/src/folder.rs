@@ -8,6 +8,7 @@ use enmm_io::files::{at_path, is_running, read_result, unfinished_name};
 use same_file::Handle;
 use serde_json::Value;
 
+use crate::along::ALONG;
 use crate::flow::FLOW;
 
 /// Name of the file by which a process holds a folder.
@@ -21,6 +22,7 @@ pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
 const FILES: [&str; 37] = [
     "blocks.csv",
+    ALONG,
     "bound.json",
     "checkpoint.enmm",
     "covers.png",

@@ -291,6 +291,9 @@ pub struct BoltRecord {
     pub utilisation: Option<f64>,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
+    /// Largest slip of the bar along the rock at both ends of the free length (m); none for a bar without a bond.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<f64>,
     /// Its condition.
     pub state: BoltCondition,
 }
@@ -309,6 +312,7 @@ impl BoltRecord {
                 support: case.support,
                 utilisation: case.yield_force.map(|yields| line.force * case.spacing / yields),
                 plastic_elongation: line.plastic_elongation,
+                slip: case.bond.map(|_| line.slip[0].abs().max(line.slip[1].abs())),
                 state: line.condition,
             }
         };

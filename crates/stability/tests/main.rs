@@ -25,3 +25,4 @@ mod slips_before_it_holds;
 mod soil_slope;
 mod support;
 mod tutorials;
+mod weak_planes;
