@@ -32,8 +32,7 @@ pub const JOINT_MONITOR_QUANTITIES: [Quantity<JointMonitorState>; 4] = [
 
 impl JointMonitorState {
     /// That of a joint of which a side has been excavated.
-    const GONE: Self =
-        Self { opening: f64::NAN, slip: f64::NAN, normal_stress: f64::NAN, shear_stress: f64::NAN };
+    const GONE: Self = Self { opening: f64::NAN, slip: f64::NAN, normal_stress: f64::NAN, shear_stress: f64::NAN };
 }
 
 /// A place on a joint.
@@ -81,8 +80,7 @@ impl JointMonitor {
         let [a, b] = reference_ends(boundary, own);
         let along = (b - a).norm();
         let share = if along > 0.0 { (place.place - a).norm() / along } else { 0.0 };
-        let anchors =
-            [0, 1].map(|k| (own.edges[k], own.spans[k][0] + share * (own.spans[k][1] - own.spans[k][0])));
+        let anchors = [0, 1].map(|k| (own.edges[k], own.spans[k][0] + share * (own.spans[k][1] - own.spans[k][0])));
         let reach = length.map_or(f64::INFINITY, |length| 0.5 * length);
         let trace = boundary.trace[own.edges[0]];
         let is_near = |piece: &&Facing| {
@@ -99,12 +97,7 @@ impl JointMonitor {
     }
 
     /// The joint now, by the contacts of now.
-    pub fn read(
-        &self,
-        (model, faces): (&Model, &Faces),
-        state: &State,
-        contacts: &[VertexEdge],
-    ) -> JointMonitorState {
+    pub fn read(&self, (model, faces): (&Model, &Faces), state: &State, contacts: &[VertexEdge]) -> JointMonitorState {
         let boundary = &model.boundary;
         if self.anchors.iter().any(|(edge, _)| state.removed[boundary.block[*edge]]) {
             return JointMonitorState::GONE;
@@ -112,12 +105,7 @@ impl JointMonitor {
         let [opening, slip] = self.apart(model, &state.displacement);
         let [opening_before, slip_before] = state.counted_from().map_or([0.0; 2], |from| self.apart(model, from));
         let [normal_stress, shear_stress] = self.stress(model, faces, &state.displacement, contacts);
-        JointMonitorState {
-            opening: opening - opening_before,
-            slip: slip - slip_before,
-            normal_stress,
-            shear_stress,
-        }
+        JointMonitorState { opening: opening - opening_before, slip: slip - slip_before, normal_stress, shear_stress }
     }
 
     /// Distance (m) of the second anchor from the first across and along the face of the first, with displacements of

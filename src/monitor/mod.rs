@@ -54,11 +54,8 @@ impl LinePlace {
     pub fn read(&self, model: &Model, state: &State) -> LinePoint {
         let stress = self.stress.read(model, state);
         let removed = state.removed[model.covers.element_block[self.element]];
-        let displacement = if removed {
-            Vector::repeat(f64::NAN)
-        } else {
-            displacement(model, state, (self.element, self.point))
-        };
+        let displacement =
+            if removed { Vector::repeat(f64::NAN) } else { displacement(model, state, (self.element, self.point)) };
         LinePoint { place: self.point, displacement, stress }
     }
 }

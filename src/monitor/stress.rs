@@ -101,8 +101,7 @@ fn plane(covers: &Covers, elements: &[ElementId], point: Point) -> Vec<(ElementI
     };
     let middle = Point::new(mean(&|e| covers.element_centroid[e].x), mean(&|e| covers.element_centroid[e].y));
     let arm = |e: ElementId| covers.element_centroid[e] - middle;
-    let [xx, yy, xy] =
-        [mean(&|e| arm(e).x * arm(e).x), mean(&|e| arm(e).y * arm(e).y), mean(&|e| arm(e).x * arm(e).y)];
+    let [xx, yy, xy] = [mean(&|e| arm(e).x * arm(e).x), mean(&|e| arm(e).y * arm(e).y), mean(&|e| arm(e).x * arm(e).y)];
     let [most, least] = principal(&[xx, yy, xy]);
     let to = point - middle;
     let determinant = xx * yy - xy * xy;

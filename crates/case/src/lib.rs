@@ -55,7 +55,8 @@ pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_law::{Breaks, DILATION_SLIP, JointLaw, JointLawKind};
 pub use joint_set::{
-    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, NamedJoint, Section, Side, Tessellation,
+    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, NamedJoint, Section, Side,
+    Tessellation,
 };
 pub use key::Invalid;
 pub use load::{Gravity, InitialVelocity, Load, LoadKind};

@@ -17,6 +17,7 @@ mod font;
 mod histogram;
 mod history;
 mod legend;
+mod lines;
 mod model;
 mod raster;
 #[cfg(feature = "searches")]
@@ -47,6 +48,7 @@ pub use displacement::displacement_picture;
 pub use flow::flow_picture;
 pub use histogram::{Fit, histogram_picture};
 pub use history::{Series, history_picture};
+pub use lines::{LineProfile, ProfileCurve, lines_picture};
 pub use model::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_picture};
 #[cfg(feature = "searches")]
 pub use reduction::{failure_picture, trials_picture};

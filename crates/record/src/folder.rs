@@ -9,6 +9,7 @@ use same_file::Handle;
 use serde_json::Value;
 
 use crate::flow::FLOW;
+use crate::lines::LINES;
 
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
@@ -19,7 +20,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 36] = [
+const FILES: [&str; 37] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
@@ -45,6 +46,7 @@ const FILES: [&str; 36] = [
     "history.csv",
     "history.png",
     "history.svg",
+    LINES,
     "model.png",
     "model.svg",
     "report.html",

@@ -16,6 +16,8 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::flow::FlowRecord;
+use crate::lines::LineRecord;
+use crate::monitors::{JointMonitorRecord, MonitorRecord};
 use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
@@ -67,6 +69,18 @@ pub struct Summary {
     /// Where each dynamic stage has left the rock.
     #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
     pub permanent: Vec<PermanentMotion>,
+    /// Points of the case at the end.
+    #[serde(skip_serializing_if = "<[MonitorRecord]>::is_empty")]
+    pub monitors: Vec<MonitorRecord>,
+    /// Gauges across joints at the end.
+    #[serde(skip_serializing_if = "<[JointMonitorRecord]>::is_empty")]
+    pub joint_monitors: Vec<JointMonitorRecord>,
+    /// Lines at the ends of the stages.
+    #[serde(skip_serializing_if = "<[LineRecord]>::is_empty")]
+    pub lines: Vec<LineRecord>,
+    /// Stage from whose end displacements count; not there when they count from the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub since: Option<String>,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -404,6 +418,7 @@ pub(crate) struct RunRecord<'a> {
     pub coupled: Option<CoupledRecord>,
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
+    pub lines: Vec<LineRecord>,
     pub failed: bool,
     pub verdict: String,
     pub ledger: &'a Ledger,
@@ -431,6 +446,10 @@ impl Summary {
             model: ModelCounts::of(simulation),
             stages: record.stages,
             permanent: record.permanent,
+            monitors: MonitorRecord::all(simulation),
+            joint_monitors: JointMonitorRecord::all(simulation),
+            lines: record.lines,
+            since: simulation.case().output.since.clone(),
             time: simulation.time(),
             steps: state.step,
             dt: StepSizes {

@@ -74,7 +74,19 @@ from ._results import Fos, Result, RunError
 from ._table import Table
 from ._tasks import bound, check, fos, run
 from ._types import Cut, Event, FlowInputs, Inputs, PortInputs
-from ._values import BLOCK_FIELDS, Energies, InletState, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
+from ._values import (
+    BLOCK_FIELDS,
+    Energies,
+    InletState,
+    JointMonitorState,
+    MonitorState,
+    MonitorStress,
+    PortState,
+    Progress,
+    StartInfo,
+    StepInfo,
+    Totals,
+)
 
 __version__ = "0.1.0"
 
@@ -122,6 +134,7 @@ __all__ = [
     "Inputs",
     "Interpolation",
     "InvalidArgumentError",
+    "JointMonitorState",
     "Library",
     "LibraryError",
     "LogLevel",
@@ -129,6 +142,7 @@ __all__ = [
     "MemoryPart",
     "Model",
     "MonitorState",
+    "MonitorStress",
     "NameKind",
     "NotFoundError",
     "NullArgumentError",

@@ -26,7 +26,7 @@ use crate::contact::{
     BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
     Support,
 };
-use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
+use crate::cover::{self, BlockId, CoverId, Covers, Crumb, Outlines};
 use crate::flow::FlowNet;
 use crate::geometry::ends::EndDistances;
 use crate::geometry::{NodingReport, Point, Vector, polygon};

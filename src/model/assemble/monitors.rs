@@ -71,9 +71,7 @@ impl Search<'_> {
         let what = monitor.joint.as_ref().map_or("joint".to_owned(), |name| format!("piece of {name:?}"));
         let invalid = |message| Err(Invalid { key: format!("{key}.point"), message });
         match JointPlace::nearest(boundary, self.faces, point, &is_meant) {
-            Some(place) if place.distance <= size => {
-                Ok(JointMonitor::new(boundary, self.faces, place, monitor.length))
-            }
+            Some(place) if place.distance <= size => Ok(JointMonitor::new(boundary, self.faces, place, monitor.length)),
             Some(JointPlace { place, distance, .. }) => invalid(format!(
                 "no {what} between two blocks is near ({}, {}): the nearest is {distance:.3} m off at ({:.6}, {:.6}), at \
                  most one mesh size, {size} m, is allowed; choose a point on the joint",

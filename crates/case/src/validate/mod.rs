@@ -20,7 +20,7 @@ use crate::key::{Check, Key, fail};
 use crate::keys::{Range, Rule};
 use crate::limits::{NAME_MAX, TITLE_MAX};
 use crate::{Case, Domain, FmuNotes, InSitu, Invalid, JointLaw, Plane, ReportNotes, Rock};
-use checks::{Names, each, harmless, points, polygon, region, unique};
+use checks::{Names, each, harmless, points, polygon, region};
 
 /// Longest line of the cover of a report (bytes).
 const REPORT_NOTE_MAX: usize = 4000;

@@ -1,0 +1,66 @@
+//! Monitors at the end of a run, for summaries.
+
+use serde::Serialize;
+
+use enmm::model::{JointMonitorState, Simulation, Stress};
+
+/// A point of the case at the end of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MonitorRecord {
+    /// Name.
+    pub name: String,
+    /// Place in the reference configuration (m).
+    pub place: [f64; 2],
+    /// Displacement (m).
+    pub displacement: [f64; 2],
+    /// Stress xx, yy, xy (Pa, tension positive); not there of a point that reads none, nulls where rock is gone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stress: Option<Stress>,
+}
+
+/// A gauge across a joint at the end of a run; nulls where a side is gone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointMonitorRecord {
+    /// Name.
+    pub name: String,
+    /// Place on the joint in the reference configuration (m).
+    pub place: [f64; 2],
+    /// Opening (m).
+    pub opening: f64,
+    /// Slip (m), positive where the far side has moved to the right.
+    pub slip: f64,
+    /// Normal stress (Pa, tension positive).
+    pub normal_stress: f64,
+    /// Shear stress (Pa), as the slip.
+    pub shear_stress: f64,
+}
+
+impl MonitorRecord {
+    /// Those of a model.
+    pub fn all(simulation: &Simulation) -> Vec<Self> {
+        let monitors = simulation.case().monitors.iter().enumerate();
+        monitors
+            .map(|(k, monitor)| Self {
+                name: monitor.name.clone(),
+                place: monitor.point,
+                displacement: simulation.monitor(k).0.into(),
+                stress: simulation.monitor_stress(k),
+            })
+            .collect()
+    }
+}
+
+impl JointMonitorRecord {
+    /// Those of a model.
+    pub fn all(simulation: &Simulation) -> Vec<Self> {
+        let (case, places) = (simulation.case(), &simulation.built().monitors.joints);
+        let states = case.joint_monitors.iter().zip(places).zip(simulation.joint_monitors());
+        states
+            .map(|((monitor, place), state)| {
+                let JointMonitorState { opening, slip, normal_stress, shear_stress } = *state;
+                let (name, place) = (monitor.name.clone(), place.place.into());
+                Self { name, place, opening, slip, normal_stress, shear_stress }
+            })
+            .collect()
+    }
+}
