@@ -5,7 +5,7 @@ use crate::cover::CoverId;
 use crate::geometry::{Point, TraceId, Vector, segment};
 use crate::state::{Model, Quantity, State};
 
-use super::Faces;
+use super::faces::Faces;
 
 /// Numbers of a monitor of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -36,9 +36,13 @@ pub struct JointMonitorRecord {
 }
 
 impl MonitorRecord {
-    /// Those of a model.
+    /// Those of a model; none of a case that neither reads stress at one nor says from when displacements count.
     pub fn all(simulation: &Simulation) -> Vec<Self> {
-        let monitors = simulation.case().monitors.iter().enumerate();
+        let case = simulation.case();
+        if case.output.since.is_none() && !case.monitors.iter().any(|monitor| monitor.stress) {
+            return Vec::new();
+        }
+        let monitors = case.monitors.iter().enumerate();
         monitors
             .map(|(k, monitor)| Self {
                 name: monitor.name.clone(),

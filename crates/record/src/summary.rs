@@ -69,7 +69,7 @@ pub struct Summary {
     /// Where each dynamic stage has left the rock.
     #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
     pub permanent: Vec<PermanentMotion>,
-    /// Points of the case at the end.
+    /// Points of the case at the end; not there of a case that neither reads stress nor names a stage to count from.
     #[serde(skip_serializing_if = "<[MonitorRecord]>::is_empty")]
     pub monitors: Vec<MonitorRecord>,
     /// Gauges across joints at the end.
