@@ -28,27 +28,24 @@ fn column(size: f64) -> String {
     )
 }
 
-/// Stress at depth is the weight above, and the sides are free. The elements share a stress each; the plane through
-/// those about a point finds the straight line between them, within 0.5 % of the weight of the column at a mesh of a
-/// fifth of its width, and nearer by half on a finer one. The stress of the element alone is off by up to half of the
-/// weight of a mesh size, 2 % here.
+/// Stress at depth is the weight above, and the sides are free. Elements have one stress each, which is off by up to half
+/// of the weight of a mesh size; the plane through those about a point is nearer by twenty times: 0.1 % of the weight of
+/// the column. Next to the foot, whose rollers push at points, 1 % is left of them.
 #[test]
 fn stress_in_a_column_is_the_weight_above() {
     let whole = DENSITY * GRAVITY * 10.0;
-    let errors = [0.4, 0.2].map(|size| {
+    for size in [0.4, 0.2] {
         let mut column = simulation(&column(size));
         let report = run_stage(&mut column);
         assert!(column.at_rest(&report), "{report:?}");
-        let mut worst = 0.0_f64;
         for (k, y) in [0.0, 0.3, 2.0, 5.0, 8.0, 9.9].into_iter().enumerate() {
             let found = column.monitor_stress(k).unwrap();
             let exact = [0.0, -DENSITY * GRAVITY * (10.0 - y), 0.0];
+            let most = whole * if (1.0..9.0).contains(&y) { 1e-3 } else { 0.01 };
             println!("size {size}, y {y}: {found:?}, exact {exact:?}");
-            worst = (0..3).map(|part| (found[part] - exact[part]).abs() / whole).fold(worst, f64::max);
+            assert!((0..3).all(|part| is_near(found[part], exact[part], most)), "{found:?}, exact {exact:?}");
         }
-        worst
-    });
-    assert!(errors[0] < 0.005 && errors[1] < 0.5 * errors[0], "{errors:?}");
+    }
 }
 
 /// A square with an inclined joint, held all round, under a stress that does not vary.
@@ -184,12 +181,13 @@ fn a_block_that_leaves_has_an_opening_and_no_stress() {
     assert!(base.slip.abs() < 1e-3 && [base.normal_stress, base.shear_stress] == [0.0; 2], "{base:?}");
 }
 
-/// A block of 3 m by 6 m under shear tractions all round, its foot held: u = (τ/G)·y to the right.
+/// A block of 3 m by 6 m under shear tractions all round, held at two points that bear nothing: u = (τ/G)·y to the right.
 fn sheared(more: &str) -> String {
     format!(
         "title = \"shear\"\n[domain]\noutline = [[0, 0], [3, 0], [3, 6], [0, 6]]\n[mesh]\nsize = 0.7\nangle_deg = 5\n\
          [rock.rock]\ndensity = {DENSITY}\nyoung = 1e9\npoisson = 0.25\n[gravity]\ny = 0\n[[fix]]\n\
-         edge = [[0, 0], [3, 0]]\n[[load]]\nkind = \"traction\"\nedge = [[0, 6], [3, 6]]\ntraction = [2e5, 0]\n\
+         point = [0, 0]\n[[fix]]\npoint = [3, 0]\naxes = \"y\"\n[[load]]\nkind = \"traction\"\n\
+         edge = [[0, 0], [3, 0]]\ntraction = [-2e5, 0]\n[[load]]\nkind = \"traction\"\nedge = [[0, 6], [3, 6]]\ntraction = [2e5, 0]\n\
          [[load]]\nkind = \"traction\"\nedge = [[3, 0], [3, 6]]\ntraction = [0, 2e5]\n[[load]]\nkind = \"traction\"\n\
          edge = [[0, 0], [0, 6]]\ntraction = [0, -2e5]\n[[line]]\nname = \"hole\"\nfrom = [1.5, 6]\nto = [1.5, 0]\n\
          points = 13\n{more}[[stage]]\nname = \"shear\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-9\n"
@@ -295,7 +293,7 @@ fn monitors_without_a_joint_and_lines_without_rock_are_refused() {
     for (text, parts) in [
         (gauge("point = [2, 3.5]"), ["joint_monitor[0].point", "at most one mesh size, 0.5 m"]),
         (gauge("point = [2, 1.75]\njoint = \"beding\""), ["joint_monitor[0].joint", "the case has: joint[0];"]),
-        (gauge("point = [2, 1.75]\nlength = 0"), ["joint_monitor[0].length", "above 0"]),
+        (gauge("point = [2, 1.75]\nlength = 0"), ["joint_monitor[0].length", "must be greater than 0"]),
         (line("from = [1, 1]\nto = [1, 9]"), ["line[1]", "point 9 of 21: there is no rock at (1, 4.2)"]),
         (line("from = [1, 1]\nto = [1, 1]"), ["line[1].to", "a segment needs two different points"]),
         (line("from = [1, 1]\nto = [1, 3]\npoints = 1"), ["line[1].points", "at least 2"]),
