@@ -23,14 +23,15 @@ fn column(size: f64) -> String {
     format!(
         "title = \"column\"\n[domain]\noutline = [[0, 0], [2, 0], [2, 10], [0, 10]]\n[mesh]\nsize = {size}\n\
          angle_deg = 7\norigin = [0.0137, 0.0071]\n[rock.rock]\ndensity = {DENSITY}\nyoung = 1e9\npoisson = 0.2\n\
-         [[fix]]\nedge = [[0, 0], [2, 0]]\naxes = \"y\"\n[[fix]]\npoint = [1.0, 0.0]\naxes = \"x\"\n{monitors}[[stage]]\n\
+         [[fix]]\nedge = [[0, 0], [2, 0]]\naxes = \"y\"\n[[fix]]\npoint = [1.0, 0.0]\naxes = \"x\"\n{monitors}\
+         [[stage]]\n\
          name = \"gravity\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-8\n"
     )
 }
 
-/// Stress at depth is the weight above, and the sides are free. Elements have one stress each, which is off by up to half
-/// of the weight of a mesh size; the plane through those about a point is nearer by twenty times: 0.1 % of the weight of
-/// the column. Next to the foot, whose rollers push at points, 1 % is left of them.
+/// Stress at depth is the weight above, and the sides are free. Elements have one stress each, which is off by up to
+/// half of the weight of a mesh size; the plane through those about a point is nearer by twenty times: 0.1 % of the
+/// weight of the column. Next to the foot, whose rollers push at points, 1 % is left of them.
 #[test]
 fn stress_in_a_column_is_the_weight_above() {
     let whole = DENSITY * GRAVITY * 10.0;
@@ -181,13 +182,14 @@ fn a_block_that_leaves_has_an_opening_and_no_stress() {
     assert!(base.slip.abs() < 1e-3 && [base.normal_stress, base.shear_stress] == [0.0; 2], "{base:?}");
 }
 
-/// A block of 3 m by 6 m under shear tractions all round, held at two points that bear nothing: u = (τ/G)·y to the right.
+/// A block of 3 m by 6 m under shear tractions all round, held at two points without a force: u = (τ/G)·y to the right.
 fn sheared(more: &str) -> String {
     format!(
         "title = \"shear\"\n[domain]\noutline = [[0, 0], [3, 0], [3, 6], [0, 6]]\n[mesh]\nsize = 0.7\nangle_deg = 5\n\
          [rock.rock]\ndensity = {DENSITY}\nyoung = 1e9\npoisson = 0.25\n[gravity]\ny = 0\n[[fix]]\n\
          point = [0, 0]\n[[fix]]\npoint = [3, 0]\naxes = \"y\"\n[[load]]\nkind = \"traction\"\n\
-         edge = [[0, 0], [3, 0]]\ntraction = [-2e5, 0]\n[[load]]\nkind = \"traction\"\nedge = [[0, 6], [3, 6]]\ntraction = [2e5, 0]\n\
+         edge = [[0, 0], [3, 0]]\ntraction = [-2e5, 0]\n[[load]]\nkind = \"traction\"\n\
+         edge = [[0, 6], [3, 6]]\ntraction = [2e5, 0]\n\
          [[load]]\nkind = \"traction\"\nedge = [[3, 0], [3, 6]]\ntraction = [0, 2e5]\n[[load]]\nkind = \"traction\"\n\
          edge = [[0, 0], [0, 6]]\ntraction = [0, -2e5]\n[[line]]\nname = \"hole\"\nfrom = [1.5, 6]\nto = [1.5, 0]\n\
          points = 13\n{more}[[stage]]\nname = \"shear\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-9\n"

@@ -188,8 +188,7 @@ impl Simulation {
         self.check_stages(model, state)?;
         check_drive(model, drive)?;
         check_events(model, events)?;
-        check_ledger(ledger)?;
-        check_counters(counters)
+        check_ledger(ledger).and_then(|()| check_counters(counters))
     }
 
     /// Checks sections that have broken, builds the model with them, and checks its worst sections.

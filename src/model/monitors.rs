@@ -1,4 +1,4 @@
-//! What monitors and lines show of a model now.
+//! Numbers of monitors and lines now.
 
 use crate::geometry::Vector;
 use crate::monitor::{self, JointMonitorState, LinePlace, LinePoint, Stress};

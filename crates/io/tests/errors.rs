@@ -23,8 +23,8 @@ fn unknown_section_names_the_nearest_known_section() {
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, \
          bridge, cut, domain, drain, ensemble, fix, flow, fmu, fracture, free_field, gravity, head, in_situ, \
          initial_velocity, joint, joint_law, joint_monitor, joint_set, law_region, layers, line, load, mesh, monitor, \
-         output, port, quiet, rain, random, random_correlation, report, rock, section, solver, stage, tessellation, title, \
-         transform, water; rename or remove it",
+         output, port, quiet, rain, random, random_correlation, report, rock, section, solver, stage, tessellation, \
+         title, transform, water; rename or remove it",
     );
 }
 

@@ -4,6 +4,37 @@ use serde::Serialize;
 
 use enmm::model::{JointMonitorState, Simulation, Stress};
 
+use crate::lines::LineRecord;
+
+/// Monitors at the end of a run, and lines.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Measured {
+    /// Points of the case; not there of a case that neither reads stress nor names a stage to count from.
+    #[serde(skip_serializing_if = "<[MonitorRecord]>::is_empty")]
+    pub monitors: Vec<MonitorRecord>,
+    /// Gauges across joints.
+    #[serde(skip_serializing_if = "<[JointMonitorRecord]>::is_empty")]
+    pub joint_monitors: Vec<JointMonitorRecord>,
+    /// Lines at the ends of the stages.
+    #[serde(skip_serializing_if = "<[LineRecord]>::is_empty")]
+    pub lines: Vec<LineRecord>,
+    /// Stage from whose end displacements count; not there when they count from the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub since: Option<String>,
+}
+
+impl Measured {
+    /// That of a model with lines so far.
+    pub(crate) fn of(simulation: &Simulation, lines: Vec<LineRecord>) -> Self {
+        Self {
+            monitors: MonitorRecord::all(simulation),
+            joint_monitors: JointMonitorRecord::all(simulation),
+            lines,
+            since: simulation.case().output.since.clone(),
+        }
+    }
+}
+
 /// A point of the case at the end of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MonitorRecord {

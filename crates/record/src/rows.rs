@@ -170,7 +170,7 @@ pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
     (0..simulation.case().monitors.len()).map(|k| simulation.monitor(k)).collect()
 }
 
-/// What monitors of stress and of joints show at the time of a row.
+/// Numbers of monitors of stress and of joints at the time of a row.
 #[derive(Debug)]
 pub struct Readings {
     stresses: Vec<Option<Stress>>,
@@ -187,8 +187,8 @@ impl Readings {
 }
 
 /// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
-/// step before (s), `readings` those of stress and joints at its start, `tensions` those of the bolts at its end. Velocities, which live halfway between, are brought to
-/// the time of the row.
+/// step before (s), `readings` those of stress and joints at its start, `tensions` those of the bolts at its end.
+/// Velocities, which live halfway between, are brought to the time of the row.
 pub fn row(
     stage: u32,
     report: &StepReport,

@@ -17,7 +17,7 @@ use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::flow::FlowRecord;
 use crate::lines::LineRecord;
-use crate::monitors::{JointMonitorRecord, MonitorRecord};
+use crate::monitors::Measured;
 use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
@@ -69,18 +69,9 @@ pub struct Summary {
     /// Where each dynamic stage has left the rock.
     #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
     pub permanent: Vec<PermanentMotion>,
-    /// Points of the case at the end; not there of a case that neither reads stress nor names a stage to count from.
-    #[serde(skip_serializing_if = "<[MonitorRecord]>::is_empty")]
-    pub monitors: Vec<MonitorRecord>,
-    /// Gauges across joints at the end.
-    #[serde(skip_serializing_if = "<[JointMonitorRecord]>::is_empty")]
-    pub joint_monitors: Vec<JointMonitorRecord>,
-    /// Lines at the ends of the stages.
-    #[serde(skip_serializing_if = "<[LineRecord]>::is_empty")]
-    pub lines: Vec<LineRecord>,
-    /// Stage from whose end displacements count; not there when they count from the start.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub since: Option<String>,
+    /// Monitors at the end, and lines.
+    #[serde(flatten)]
+    pub measured: Measured,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -340,6 +331,14 @@ pub struct StepSizes {
     pub critical: f64,
 }
 
+impl StepSizes {
+    /// Those of a model.
+    fn of(simulation: &Simulation) -> Self {
+        let (model, counters) = (simulation.model(), &simulation.state().counters);
+        Self { min: counters.dt_min, max: counters.dt_max, internal: model.dt, critical: model.critical_dt }
+    }
+}
+
 /// The open–close iteration over a whole run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpenCloseRecord {
@@ -446,18 +445,10 @@ impl Summary {
             model: ModelCounts::of(simulation),
             stages: record.stages,
             permanent: record.permanent,
-            monitors: MonitorRecord::all(simulation),
-            joint_monitors: JointMonitorRecord::all(simulation),
-            lines: record.lines,
-            since: simulation.case().output.since.clone(),
+            measured: Measured::of(simulation, record.lines),
             time: simulation.time(),
             steps: state.step,
-            dt: StepSizes {
-                min: counters.dt_min,
-                max: counters.dt_max,
-                internal: model.dt,
-                critical: model.critical_dt,
-            },
+            dt: StepSizes::of(simulation),
             open_close: OpenCloseRecord {
                 mean: counters.sweeps as f64 / counters.substeps.max(1) as f64,
                 max: counters.sweeps_max,

@@ -73,8 +73,8 @@ impl Search<'_> {
         match JointPlace::nearest(boundary, self.faces, point, &is_meant) {
             Some(place) if place.distance <= size => Ok(JointMonitor::new(boundary, self.faces, place, monitor.length)),
             Some(JointPlace { place, distance, .. }) => invalid(format!(
-                "no {what} between two blocks is near ({}, {}): the nearest is {distance:.3} m off at ({:.6}, {:.6}), at \
-                 most one mesh size, {size} m, is allowed; choose a point on the joint",
+                "no {what} between two blocks is near ({}, {}): the nearest is {distance:.3} m off at ({:.6}, {:.6}), \
+                 at most one mesh size, {size} m, is allowed; choose a point on the joint",
                 point.x, point.y, place.x, place.y
             )),
             None => invalid(format!("the model has no {what} with rock on both sides: leave the monitor out")),

@@ -101,8 +101,8 @@ pub unsafe extern "C" fn enmm_get_monitor_state(
     with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.monitor_state(monitor)?, out) })
 }
 
-/// Writes the stress at a monitor with `stress = true`, by its place among the `[[monitor]]`s of the case; NaN where the
-/// rock has been excavated. `out->struct_size` must be set.
+/// Writes the stress at a monitor with `stress = true`, by its place among the `[[monitor]]`s of the case; NaN where
+/// the rock has been excavated. `out->struct_size` must be set.
 ///
 /// Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or reads no stress, or a struct_size that no version
 /// had, ENMM_NULL_ARGUMENT.
