@@ -50,8 +50,8 @@ fn column((head, rows): &(Vec<String>, Vec<Vec<String>>), name: &str) -> Vec<f64
 }
 
 /// Until the block slides it has settled by micrometres, and then it counts from there: down the plane, which is to the
-/// right of the gauge, as far as the gauge slips; across the plane it keeps the stress of its weight, σn = −W cos β/L of
-/// a block of 1 m.
+/// right of the gauge, as far as the gauge slips; across the plane it keeps the stress of its weight, σn = −W cos β/L
+/// of a block of 1 m.
 #[test]
 fn history_and_lines_count_from_the_end_of_a_stage() {
     let folder = tempdir().expect("a folder");
