@@ -1,9 +1,10 @@
 //! Claim: monitors of stress, monitors of joints and lines read what closed forms say, and count from the end of the
 //! stage that a case names.
 
+use enmm::cosimulation::{Cosimulation, Named};
 use enmm::model::Simulation;
 
-use crate::common::{refusal, run_all, run_stage, simulation, step, through_bytes};
+use crate::common::{case, refusal, run_all, run_stage, simulation, step, through_bytes};
 
 const GRAVITY: f64 = 9.81;
 const DENSITY: f64 = 2600.0;
@@ -341,4 +342,20 @@ fn a_gauge_stays_on_its_joint_and_has_a_length() {
     assert!(left.normal_stress != joint.normal_stress && left.normal_stress < 0.0, "{left:?}, {joint:?}");
     let exact = -DENSITY * GRAVITY * 2.0;
     assert!(is_near(joint.normal_stress, exact, 0.01 * exact.abs()), "{joint:?}, exact {exact}");
+}
+
+/// Hosts find gauges by name and read what the model shows; of a monitor that reads no stress they ask in vain.
+#[test]
+fn hosts_read_monitors_by_name() {
+    let text = stressed([-1e6, -2e6, 0.0], GAUGE) + "[[monitor]]\nname = \"still\"\npoint = [1, 1]\n";
+    let model = Cosimulation::new(case(&text)).unwrap_or_else(|error| panic!("{error}"));
+    let gauge = model.find_name(Named::JointMonitor, "gauge").expect("a gauge");
+    assert_eq!((gauge, model.name_count(Named::JointMonitor)), (0, 1));
+    assert_eq!(model.joint_monitor_state(gauge).expect("a gauge"), model.simulation().joint_monitors()[0]);
+    let rock = model.find_name(Named::Monitor, "rock").expect("a monitor");
+    assert_eq!(Some(model.monitor_stress(rock).expect("its stress")), model.simulation().monitor_stress(0));
+    let none = model.monitor_stress(2).expect_err("no stress").to_string();
+    assert!(none.contains("set `stress = true` at it"), "{none}");
+    let absent = model.joint_monitor_state(1).expect_err("no gauge").to_string();
+    assert!(absent.contains("less than the number of monitors of joints, 1"), "{absent}");
 }

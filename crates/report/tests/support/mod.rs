@@ -200,7 +200,7 @@ pub fn head() -> Head {
         name: name.to_owned(),
         quantity: quantity.to_owned(),
         unit: unit.to_owned(),
-        gaps: name == "gauge",
+        gaps: false,
     };
     Head {
         title: "Synthetic".to_owned(),
