@@ -194,7 +194,8 @@ fn sheared() -> String {
          point = [0, 0]\n[[fix]]\npoint = [3, 0]\naxes = \"y\"\n[[load]]\nkind = \"traction\"\n\
          edge = [[0, 0], [3, 0]]\ntraction = [-{SHEAR}, 0]\n[[load]]\nkind = \"traction\"\n\
          edge = [[0, 6], [3, 6]]\ntraction = [{SHEAR}, 0]\n\
-         [[load]]\nkind = \"traction\"\nedge = [[3, 0], [3, 6]]\ntraction = [0, {SHEAR}]\n[[load]]\nkind = \"traction\"\n\
+         [[load]]\nkind = \"traction\"\n\
+         edge = [[3, 0], [3, 6]]\ntraction = [0, {SHEAR}]\n[[load]]\nkind = \"traction\"\n\
          edge = [[0, 0], [0, 6]]\ntraction = [0, -{SHEAR}]\n[[line]]\nname = \"hole\"\nfrom = [1.5, 6]\nto = [1.5, 0]\n\
          points = 13\n[[stage]]\nname = \"shear\"\nkind = \"static\"\nduration = 20.0\nconvergence = 1e-9\n"
     )
