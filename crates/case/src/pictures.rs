@@ -39,6 +39,8 @@ words! {
         /// `stage1_flow.png`: pressure head, flow and tables of the water that flows in joints, outcrops that seep, and
         /// drains.
         Flow = "flow",
+        /// `stage1_lines.png`: displacement across and along lines at the ends of the stages so far.
+        Lines = "lines",
     }
 }
 
@@ -54,7 +56,7 @@ pub enum Pictures {
 }
 
 /// Pictures of a run that names none.
-const USUAL: [PictureKind; 8] = [
+const USUAL: [PictureKind; 9] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
@@ -63,6 +65,7 @@ const USUAL: [PictureKind; 8] = [
     PictureKind::MeanStressContours,
     PictureKind::Strength,
     PictureKind::Flow,
+    PictureKind::Lines,
 ];
 
 impl Pictures {

@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use crate::along::ALONG;
 use crate::flow::FLOW;
+use crate::lines::LINES;
 
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
@@ -47,6 +48,7 @@ const FILES: [&str; 37] = [
     "history.csv",
     "history.png",
     "history.svg",
+    LINES,
     "model.png",
     "model.svg",
     "report.html",

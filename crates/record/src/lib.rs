@@ -12,6 +12,8 @@ mod flow;
 mod folder;
 pub mod history;
 mod input;
+mod lines;
+mod monitors;
 pub mod motion;
 mod progress;
 mod recorder;

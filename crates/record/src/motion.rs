@@ -126,10 +126,11 @@ fn joint_name(simulation: &Simulation, trace: usize) -> String {
 }
 
 fn monitors(simulation: &Simulation, began: &[Vector]) -> Vec<MonitorMotion> {
-    let places = &simulation.built().monitors;
+    let places = &simulation.built().monitors.points;
     let of = |(k, monitor): (usize, &Monitor)| {
         let (element, point) = places[k];
-        let since = simulation.monitor(k).0 - simulation.model().sample(element, point, began);
+        let sample = |field: &[Vector]| simulation.model().sample(element, point, field);
+        let since = sample(&simulation.state().displacement) - sample(began);
         MonitorMotion { name: monitor.name.clone(), place: monitor.point, displacement: since.into() }
     };
     simulation.case().monitors.iter().enumerate().map(of).collect()

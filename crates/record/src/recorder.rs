@@ -19,10 +19,11 @@ use crate::film::{Film, Opening, numbers};
 use crate::flow::{FLOW, FlowRecord, write_flow};
 use crate::history::HistoryWriter;
 use crate::input::input_record;
+use crate::lines::{LINES, LineRecord, write_lines};
 use crate::motion::{FailureOfStage, PermanentMotion};
 use crate::progress::{CHECKPOINT, Progress, Saved};
 use crate::results;
-use crate::rows::{self, Plan};
+use crate::rows::{self, Plan, Readings};
 use crate::summary::{CoupledRecord, FAILED, RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::verdict::Verdict;
 use crate::vtu::{Part, PvdWriter, Structures};
@@ -61,6 +62,7 @@ pub struct Closing<'a> {
 #[derive(Debug)]
 struct RowStart {
     monitors: Vec<(Vector, Vector)>,
+    readings: Readings,
     /// Lengths of the step before and of this one (s).
     dt: [f64; 2],
     sweeps_mean: f64,
@@ -275,6 +277,7 @@ impl Recorder {
         let state = simulation.state();
         RowStart {
             monitors: rows::monitors(simulation),
+            readings: Readings::of(simulation),
             dt: [state.dt_last, state.rest_of_step(simulation.model())],
             sweeps_mean: self.sweeps_mean(simulation),
         }
@@ -305,7 +308,8 @@ impl Recorder {
         let after = rows::monitors(simulation);
         let tensions = rows::tensions(simulation);
         let stage = simulation.state().stage;
-        let row = rows::row(stage, report, &start.monitors, &after, start.dt, start.sweeps_mean, &tensions);
+        let beside = (start.sweeps_mean, &start.readings);
+        let row = rows::row(stage, report, &start.monitors, &after, start.dt, beside, &tensions);
         self.history.row(&row)?;
         self.film.row(&row)
     }
@@ -327,7 +331,8 @@ impl Recorder {
 
     /// Draws the end of a stage: those pictures that the case requests.
     pub(crate) fn draw_stage(&self, simulation: &Simulation) -> io::Result<()> {
-        results::draw_stage(simulation, &self.joints, self.began(simulation), &self.directory)
+        let before = (self.began(simulation), &self.progress.lines[..]);
+        results::draw_stage(simulation, &self.joints, before, &self.directory)
     }
 
     /// The row of an instant; the step that it needs is taken back, to the state `now`. Returns whether a static stage
@@ -393,6 +398,7 @@ impl Recorder {
             let motion = PermanentMotion::of(simulation, &self.joints, self.began(simulation));
             self.progress.permanent.push(motion);
         }
+        self.progress.lines.extend(LineRecord::all(simulation));
         // The table of stages on the page is narrow, and the verdict above it has the rest.
         let outcome = if record.failure.is_some() { FAILED.to_owned() } else { record.outcome() };
         self.note_stage(simulation, Some(simulation.time()), &outcome)?;
@@ -426,6 +432,13 @@ impl Recorder {
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;
         }
+        let mut lines = self.progress.lines.clone();
+        if self.progress.done.len() <= simulation.state().stage as usize {
+            lines.extend(LineRecord::all(simulation));
+        }
+        if !lines.is_empty() {
+            write_lines(&self.directory.join(LINES), &lines)?;
+        }
         if status != RunStatus::Interrupted {
             results::draw_end(simulation, &self.directory)?;
         }
@@ -454,6 +467,7 @@ impl Recorder {
             coupled,
             stages,
             permanent: self.progress.permanent.clone(),
+            lines,
             failed: verdict.failed,
             verdict: verdict.text,
             ledger: &ledger,

@@ -357,6 +357,7 @@ impl Recording {
         progress.done.truncate(state.stage as usize);
         let dynamic = progress.done.iter().filter(|stage| stage.kind == StageKind::Dynamic).count();
         progress.permanent.truncate(dynamic);
+        progress.lines.retain(|line| line.number <= state.stage);
         let started = self.starts.iter().find(|(stage, ..)| *stage == state.stage);
         progress.started = match started {
             Some((_, breaks, started)) => simulation.after_breaks(*breaks, started),

@@ -6,7 +6,9 @@ use std::path::Path;
 use enmm::geometry::Vector;
 use enmm::model::case::{Axis, StageKind};
 use enmm::model::settle::REST_STEPS;
-use enmm::model::{Case, Simulation, StepReport};
+use enmm::model::{
+    Case, JOINT_MONITOR_QUANTITIES, JointMonitorState, MONITOR_STRESS_QUANTITIES, Simulation, StepReport, Stress,
+};
 use enmm_observe::{ENERGIES, MONITOR_QUANTITIES, REPORT_QUANTITIES, bolts};
 use enmm_picture::{Series, StageStart};
 
@@ -126,6 +128,12 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
     let mut columns = vec![("time".to_owned(), "s"), ("stage".to_owned(), "")];
     for monitor in &case.monitors {
         columns.extend(MONITOR_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
+        if monitor.stress {
+            columns.extend(MONITOR_STRESS_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
+        }
+    }
+    for monitor in &case.joint_monitors {
+        columns.extend(JOINT_MONITOR_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
     }
     columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
     columns.extend(REPORT_QUANTITIES.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
@@ -162,22 +170,42 @@ pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
     (0..simulation.case().monitors.len()).map(|k| simulation.monitor(k)).collect()
 }
 
+/// Numbers of monitors of stress and of joints at the time of a row.
+#[derive(Debug)]
+pub struct Readings {
+    stresses: Vec<Option<Stress>>,
+    joints: Vec<JointMonitorState>,
+}
+
+impl Readings {
+    /// Those of now.
+    pub fn of(simulation: &Simulation) -> Self {
+        let monitors = 0..simulation.case().monitors.len();
+        let stresses = monitors.map(|k| simulation.monitor_stress(k)).collect();
+        Self { stresses, joints: simulation.joint_monitors().to_vec() }
+    }
+}
+
 /// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
-/// step before (s), `tensions` those of the bolts at its end. Velocities, which live halfway between, are brought to
-/// the time of the row.
+/// step before (s), `readings` those of stress and joints at its start, `tensions` those of the bolts at its end.
+/// Velocities, which live halfway between, are brought to the time of the row.
 pub fn row(
     stage: u32,
     report: &StepReport,
     before: &[(Vector, Vector)],
     after: &[(Vector, Vector)],
     [dt_before, dt]: [f64; 2],
-    sweeps_mean: f64,
+    (sweeps_mean, readings): (f64, &Readings),
     tensions: &[f64],
 ) -> Vec<f64> {
     let mut row = vec![report.time, f64::from(stage + 1)];
-    for ((u, v), (_, v_after)) in before.iter().zip(after) {
+    for (((u, v), (_, v_after)), stress) in before.iter().zip(after).zip(&readings.stresses) {
         let velocity = (v * dt + v_after * dt_before) / (dt + dt_before);
         row.extend(MONITOR_QUANTITIES.iter().map(|quantity| (quantity.get)(&(*u, velocity))));
+        row.extend(stress.iter().flat_map(|stress| MONITOR_STRESS_QUANTITIES.map(|quantity| (quantity.get)(stress))));
+    }
+    for joint in &readings.joints {
+        row.extend(JOINT_MONITOR_QUANTITIES.iter().map(|quantity| (quantity.get)(joint)));
     }
     row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
     row.extend(REPORT_QUANTITIES.iter().map(|quantity| (quantity.get)(report)));
@@ -288,6 +316,8 @@ fn pictured_series(header: &str, energies: &[&str]) -> Option<Series> {
         Some((monitor, "uy")) if unit == "m" => of(format!("{monitor} y"), "displacement"),
         Some((monitor, "vx")) if unit == "m/s" => of(format!("{monitor} x"), VELOCITY),
         Some((monitor, "vy")) if unit == "m/s" => of(format!("{monitor} y"), VELOCITY),
+        Some((gauge, "opening")) if unit == "m" => of(gauge.to_owned(), "opening of joints"),
+        Some((gauge, "slip")) if unit == "m" => of(gauge.to_owned(), "slip of joints"),
         Some((bolt, "tension")) if unit == "N" => of(bolt.replace('_', " "), "tension of a bar"),
         _ if unit == "J/m" && energies.contains(&column) => of(column.replace('_', " "), ENERGY),
         _ => None,

@@ -16,6 +16,8 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::flow::{FlowRecord, PartedRecord};
+use crate::lines::LineRecord;
+use crate::monitors::Measured;
 use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
@@ -67,6 +69,9 @@ pub struct Summary {
     /// Where each dynamic stage has left the rock.
     #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
     pub permanent: Vec<PermanentMotion>,
+    /// Monitors at the end, and lines.
+    #[serde(flatten)]
+    pub measured: Measured,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -333,6 +338,14 @@ pub struct StepSizes {
     pub critical: f64,
 }
 
+impl StepSizes {
+    /// Those of a model.
+    fn of(simulation: &Simulation) -> Self {
+        let (model, counters) = (simulation.model(), &simulation.state().counters);
+        Self { min: counters.dt_min, max: counters.dt_max, internal: model.dt, critical: model.critical_dt }
+    }
+}
+
 /// The open–close iteration over a whole run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpenCloseRecord {
@@ -411,6 +424,7 @@ pub(crate) struct RunRecord<'a> {
     pub coupled: Option<CoupledRecord>,
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
+    pub lines: Vec<LineRecord>,
     pub failed: bool,
     pub verdict: String,
     pub ledger: &'a Ledger,
@@ -438,14 +452,10 @@ impl Summary {
             model: ModelCounts::of(simulation),
             stages: record.stages,
             permanent: record.permanent,
+            measured: Measured::of(simulation, record.lines),
             time: simulation.time(),
             steps: state.step,
-            dt: StepSizes {
-                min: counters.dt_min,
-                max: counters.dt_max,
-                internal: model.dt,
-                critical: model.critical_dt,
-            },
+            dt: StepSizes::of(simulation),
             open_close: OpenCloseRecord {
                 mean: counters.sweeps as f64 / counters.substeps.max(1) as f64,
                 max: counters.sweeps_max,

@@ -68,6 +68,9 @@ pub struct Column {
     pub quantity: String,
     /// Unit; empty for a pure number.
     pub unit: String,
+    /// Whether NaN stands for no value; elsewhere it is a failure.
+    #[serde(skip)]
+    pub gaps: bool,
 }
 
 /// A monitored point.

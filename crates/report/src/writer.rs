@@ -21,7 +21,8 @@ pub struct FilmWriter {
     path: PathBuf,
     file: File,
     shape: Shape,
-    columns: Vec<String>,
+    /// Name of each column, and whether it may be without values.
+    columns: Vec<(String, bool)>,
     monitors: usize,
     bolts: usize,
     rows: Vec<Vec<f64>>,
@@ -76,7 +77,7 @@ impl FilmWriter {
     }
 
     fn of(path: &Path, file: File, shape: Shape, head: &Head) -> Self {
-        let columns = head.columns.iter().map(|column| column.name.clone()).collect();
+        let columns = head.columns.iter().map(|column| (column.name.clone(), column.gaps)).collect();
         let (monitors, bolts) = (head.monitors.len(), head.bolts.len());
         let (rows, numbers) = (Vec::new(), Vec::new());
         Self { path: path.to_owned(), file, shape, columns, monitors, bolts, rows, stage: None, numbers, held: None }
@@ -136,7 +137,8 @@ impl FilmWriter {
     pub fn row(&mut self, row: &[f64]) -> Result<(), FilmError> {
         expect("numbers of a row", row.len(), self.columns.len())?;
         let time = row.first().copied().unwrap_or_default();
-        for (&value, name) in row.iter().zip(&self.columns) {
+        let is_gap = |value: f64, gaps: bool| gaps && value.is_nan();
+        for (&value, (name, _)) in row.iter().zip(&self.columns).filter(|(value, column)| !is_gap(**value, column.1)) {
             finite(value, time, || format!("{name} of a row"))?;
         }
         self.rows.push(row.to_vec());

@@ -153,7 +153,9 @@ impl Film {
             [sample.x, sample.y]
         };
         let monitor = |k| {
-            let (u, v) = simulation.monitor(k);
+            // Where it is, from the start on.
+            let ((element, point), v) = (simulation.built().monitors.points[k], simulation.monitor(k).1);
+            let u = simulation.model().sample(element, point, &simulation.state().displacement);
             MonitorFrame { displacement: [u.x, u.y], velocity: [v.x, v.y] }
         };
         let states = edge_states(simulation);
@@ -354,6 +356,7 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &
         name: name.clone(),
         quantity: quantity(name, unit).to_owned(),
         unit: (*unit).to_owned(),
+        gaps: has_gaps(name),
     };
     let number = |quantity: &&Quantity<BlockState>| BlockNumber {
         name: quantity.name.to_owned(),
@@ -376,8 +379,31 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &
     }
 }
 
+/// Ends of the names of columns of stress and joints, which have no value where rock has been excavated, and the
+/// quantities by which they are charted.
+const READINGS: [(&str, &str); 10] = [
+    ("_opening", "Opening of joints"),
+    ("_slip", "Slip of joints"),
+    ("_normal_stress", "Normal stress on joints"),
+    ("_shear_stress", "Shear stress on joints"),
+    ("_stress_xx", "Stress"),
+    ("_stress_yy", "Stress"),
+    ("_stress_xy", "Stress"),
+    ("_principal_max", "Principal stress"),
+    ("_principal_min", "Principal stress"),
+    ("_principal_angle", "Direction of the greatest compression"),
+];
+
+/// Whether a column may be without values.
+fn has_gaps(name: &str) -> bool {
+    READINGS.iter().any(|(end, _)| name.ends_with(end))
+}
+
 /// The quantity by which a column of the histories is charted.
 fn quantity<'a>(name: &'a str, unit: &str) -> &'a str {
+    if let Some((_, quantity)) = READINGS.iter().find(|(end, _)| name.ends_with(end)) {
+        return quantity;
+    }
     match (name, unit) {
         (_, "m/s") => "Velocity",
         (_, "J/m") => "Energy",

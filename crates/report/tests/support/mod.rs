@@ -219,6 +219,7 @@ pub fn head() -> Head {
         name: name.to_owned(),
         quantity: quantity.to_owned(),
         unit: unit.to_owned(),
+        gaps: false,
     };
     Head {
         title: "Synthetic".to_owned(),
