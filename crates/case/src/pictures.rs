@@ -39,6 +39,9 @@ words! {
         /// `stage1_flow.png`: pressure head, flow and tables of the water that flows in joints, outcrops that seep, and
         /// drains.
         Flow = "flow",
+        /// `record.png` and `spectra.png`, of cases with ground motions: acceleration of the records over time, and
+        /// response spectra of records and monitors.
+        Spectra = "spectra",
     }
 }
 
@@ -54,7 +57,7 @@ pub enum Pictures {
 }
 
 /// Pictures of a run that names none.
-const USUAL: [PictureKind; 8] = [
+const USUAL: [PictureKind; 9] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
@@ -63,6 +66,7 @@ const USUAL: [PictureKind; 8] = [
     PictureKind::MeanStressContours,
     PictureKind::Strength,
     PictureKind::Flow,
+    PictureKind::Spectra,
 ];
 
 impl Pictures {

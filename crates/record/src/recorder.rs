@@ -14,6 +14,7 @@ use enmm_report::{Axis, FILM, Note};
 
 use crate::blocks::write_blocks;
 use crate::breaks::SectionRecord;
+use crate::earthquake::{self, EarthquakeRecord};
 use crate::film::{Film, Opening, numbers};
 use crate::flow::{FLOW, FlowRecord, write_flow};
 use crate::history::HistoryWriter;
@@ -296,7 +297,8 @@ impl Recorder {
         let after = rows::monitors(simulation);
         let tensions = rows::tensions(simulation);
         let stage = simulation.state().stage;
-        let row = rows::row(stage, report, &start.monitors, &after, start.dt, start.sweeps_mean, &tensions);
+        let mut row = rows::row(stage, report, &start.monitors, &after, start.dt, start.sweeps_mean, &tensions);
+        row.extend(earthquake::accelerations(simulation.case(), self.history.last(), &row));
         self.history.row(&row)?;
         self.film.row(&row)
     }
@@ -414,8 +416,9 @@ impl Recorder {
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;
         }
+        let earthquakes = self.close_earthquakes(simulation)?;
         if status != RunStatus::Interrupted {
-            results::draw_end(simulation, &self.directory)?;
+            results::draw_end(simulation, &earthquakes, &self.directory)?;
         }
         let mut stages = self.progress.done.clone();
         if stages.len() <= simulation.state().stage as usize {
@@ -442,6 +445,7 @@ impl Recorder {
             coupled,
             stages,
             permanent: self.progress.permanent.clone(),
+            earthquakes,
             failed: verdict.failed,
             verdict: verdict.text,
             ledger: &ledger,
@@ -453,6 +457,17 @@ impl Recorder {
         let summary = Summary::new(simulation, record);
         summary.write(&self.directory.join("summary.json"))?;
         Ok(summary)
+    }
+
+    /// Writes the tables of the earthquakes, and warns of histories that are too coarse for them.
+    fn close_earthquakes(&mut self, simulation: &Simulation) -> io::Result<Vec<EarthquakeRecord>> {
+        let earthquakes = EarthquakeRecord::all(simulation.case(), &self.directory.join("history.csv"))?;
+        if !earthquakes.is_empty() {
+            earthquake::write(&self.directory, &earthquakes)?;
+        }
+        let doubts: Vec<String> = earthquakes.iter().filter_map(EarthquakeRecord::doubt).collect();
+        doubts.into_iter().try_for_each(|text| self.warn(simulation, text))?;
+        Ok(earthquakes)
     }
 
     fn wall(&self, simulation: &Simulation) -> WallSeconds {

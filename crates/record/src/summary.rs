@@ -15,6 +15,7 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
+use crate::earthquake::EarthquakeRecord;
 use crate::flow::FlowRecord;
 use crate::motion::{FailureOfStage, PermanentMotion};
 
@@ -67,6 +68,9 @@ pub struct Summary {
     /// Where each dynamic stage has left the rock.
     #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
     pub permanent: Vec<PermanentMotion>,
+    /// Measures of ground motions and of the monitors that they shake.
+    #[serde(skip_serializing_if = "<[EarthquakeRecord]>::is_empty")]
+    pub earthquakes: Vec<EarthquakeRecord>,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -404,6 +408,8 @@ pub(crate) struct RunRecord<'a> {
     pub coupled: Option<CoupledRecord>,
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
+    /// Measures of ground motions.
+    pub earthquakes: Vec<EarthquakeRecord>,
     pub failed: bool,
     pub verdict: String,
     pub ledger: &'a Ledger,
@@ -431,6 +437,7 @@ impl Summary {
             model: ModelCounts::of(simulation),
             stages: record.stages,
             permanent: record.permanent,
+            earthquakes: record.earthquakes,
             time: simulation.time(),
             steps: state.step,
             dt: StepSizes {
