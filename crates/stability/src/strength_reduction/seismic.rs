@@ -63,7 +63,7 @@ impl Direction {
         let rise = height(right) - height(left);
         if rise.abs() <= LEVEL * (top - bottom) {
             let message = "is as high at its left end as at its right, so that nothing says to which side the slope \
-                           falls; name it, as in --seismic left";
+                           falls; name it, as in --seismic=left";
             return Err(Invalid { key: "domain.outline".to_owned(), message: message.to_owned() });
         }
         Ok(if rise > 0.0 { Self::Left } else { Self::Right })
