@@ -30,11 +30,10 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
 /// Mean accelerations (m/s²) of monitors since the last row, by the velocities of both; 0 in the first row. The values
 /// of [`columns`].
 pub fn accelerations(case: &Case, last: Option<&[f64]>, row: &[f64]) -> Vec<f64> {
-    let places = velocities(case);
     let Some(last) = last.filter(|last| is_shaken(case) && row[0] > last[0]) else {
         return vec![0.0; columns(case).len()];
     };
-    places.into_iter().flatten().map(|k| (row[k] - last[k]) / (row[0] - last[0])).collect()
+    velocities(case).into_iter().flatten().map(|k| (row[k] - last[k]) / (row[0] - last[0])).collect()
 }
 
 /// Places of the columns of the velocities of each monitor.
