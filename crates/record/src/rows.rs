@@ -22,6 +22,8 @@ const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
 
 /// More bolts than this have one column, with the largest tension of all.
 const BOLTS_MAX: usize = 50;
+/// Share of a step by which a time that is one of whole steps may fall short of it, by rounding.
+const WHOLE: f64 = 1e-6;
 /// End of the name of the column of a bolt.
 const TENSION: &str = "_tension";
 /// Quantity of the energies in their picture.
@@ -119,7 +121,12 @@ impl Plan {
 fn row_interval(simulation: &Simulation) -> Option<f64> {
     let case = simulation.case();
     let is_shaken = case.is_shaken(simulation.state().stage as usize);
-    let shortest = || (simulation.stage().duration / ROWS[0]).min(earthquake::ROW_INTERVAL);
+    // Whole steps, and not more of them than the time has.
+    let steps = |time: f64| (time / simulation.model().dt + WHOLE).floor().max(1.0);
+    let shortest = || {
+        let interval = (simulation.stage().duration / ROWS[0]).min(earthquake::ROW_INTERVAL);
+        simulation.model().dt * steps(interval)
+    };
     case.output.history_interval.or_else(|| is_shaken.then(shortest))
 }
 

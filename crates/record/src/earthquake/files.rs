@@ -95,8 +95,8 @@ pub fn draw(directory: &Path, title: &str, earthquakes: &[EarthquakeRecord]) -> 
     }
     history_picture(title, &series, &[]).write(directory, PICTURES[0])?;
     let chart = Chart {
-        title: title.to_owned(),
-        axes: ["period [s]".to_owned(), "pseudo-acceleration, 5 % of damping [m/s²]".to_owned()],
+        title: format!("{title}: response spectra, 5 % of damping"),
+        axes: ["period [s]".to_owned(), "pseudo-acceleration [m/s²]".to_owned()],
         logarithmic: [true, false],
         series: spectra,
     };
