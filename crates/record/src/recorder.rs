@@ -298,7 +298,7 @@ impl Recorder {
         let tensions = rows::tensions(simulation);
         let stage = simulation.state().stage;
         let mut row = rows::row(stage, report, &start.monitors, &after, start.dt, start.sweeps_mean, &tensions);
-        row.extend(earthquake::accelerations(simulation.case(), self.history.last(), &row));
+        row.extend(earthquake::accelerations(simulation, self.history.last(), &row));
         self.history.row(&row)?;
         self.film.row(&row)
     }
@@ -461,7 +461,7 @@ impl Recorder {
 
     /// Writes the tables of the earthquakes, and warns of histories that are too coarse for them.
     fn close_earthquakes(&mut self, simulation: &Simulation) -> io::Result<Vec<EarthquakeRecord>> {
-        let earthquakes = EarthquakeRecord::all(simulation.case(), &self.directory.join("history.csv"))?;
+        let earthquakes = EarthquakeRecord::all(simulation, &self.directory.join("history.csv"))?;
         if !earthquakes.is_empty() {
             earthquake::write(&self.directory, &earthquakes)?;
         }

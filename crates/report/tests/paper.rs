@@ -316,7 +316,7 @@ fn an_earthquake_has_a_chapter_with_its_motions_and_what_slipped() {
     let html = html(folder_with(&[("summary.json", &quake())]).path());
     let chapter = html.split("<h2>Earthquake</h2>").nth(1).and_then(|rest| rest.split("</section>").next());
     let chapter = chapter.expect("a chapter");
-    let places = ["quiet[0], outcrop", "3.3551", "crest", "0.52288", "2.6044", "Joint law", "bedding", "cross"];
+    let places = ["quiet[0], outcrop", "crest", "3.3551", "0.52288", "2.6044", "Joint law", "bedding", "cross"];
     let at = places.map(|text| chapter.find(text).unwrap_or_else(|| panic!("{text} is not in the chapter")));
     assert!(at.is_sorted(), "{at:?}");
     assert!(chapter.contains("<data value=\"0.00412\">4.12</data>"), "slip in millimetres");

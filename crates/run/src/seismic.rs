@@ -203,7 +203,10 @@ impl Seismic {
             None => remove(&directory.join(TABLE))?,
         }
         match failing {
-            Some(reduction) => failure_picture(title, reduction).write(directory, PICTURE),
+            Some(reduction) => {
+                let least = found.and_then(|found| found.high).unwrap_or_default();
+                failure_picture(&format!("{title}: under {least:.4} g along x"), reduction).write(directory, PICTURE)
+            }
             None => ["png", "svg"].iter().try_for_each(|end| remove(&directory.join(format!("{PICTURE}.{end}")))),
         }
     }

@@ -58,6 +58,16 @@ impl Accelerogram {
         &self.points
     }
 
+    /// Velocity (m/s) and displacement (m) at a time (s), from rest at the first point.
+    pub fn motion_at(&self, time: f64) -> [f64; 2] {
+        let mut motion = Motion::default();
+        for piece in self.pieces().take_while(|piece| piece.start < time) {
+            motion = piece.moved(motion, piece.length.min(time - piece.start));
+        }
+        let last = self.points.last().map_or(time, |point| point[0]);
+        [motion.velocity, motion.displacement + motion.velocity * (time - last).max(0.0)]
+    }
+
     /// Its straight pieces, one after the other.
     pub(crate) fn pieces(&self) -> impl Iterator<Item = Piece> {
         self.points.windows(2).map(|two| {

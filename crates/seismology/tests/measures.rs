@@ -41,6 +41,22 @@ fn a_rectangle_has_nine_tenths_of_its_length() {
     close(found.displacement, 0.5 * 3.0 * 0.25, 1e-12);
 }
 
+/// v = a/ω (1 − cos ωt), d = a/ω (t − sin ωt / ω), and on with the last velocity.
+#[test]
+fn the_motion_at_a_time_is_that_of_its_integrals() {
+    let (a, f) = (2.0, 0.75);
+    let omega = 2.0 * PI * f;
+    let motion = sine(a, f, 1.0);
+    for t in [0.0, 0.3335, 0.9, 1.0, 1.5] {
+        let (during, after) = (f64::min(t, 1.0), f64::max(t - 1.0, 0.0));
+        let velocity = a / omega * (1.0 - (omega * during).cos());
+        let way = a / omega * (during - (omega * during).sin() / omega) + velocity * after;
+        let [found_velocity, found_way] = motion.motion_at(t);
+        assert!((found_velocity - velocity).abs() < 1e-5 && (found_way - way).abs() < 1e-5, "{t}");
+    }
+    assert_eq!(motion.motion_at(-1.0), [0.0; 2]);
+}
+
 #[test]
 fn rest_has_no_measures() {
     let found = rectangle(0.0, 2.0).measures(G);

@@ -4,12 +4,12 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use enmm::model::Case;
 use enmm::model::case::Axis;
+use enmm::model::{Case, Simulation};
 use enmm_io::files::at_path;
 use enmm_seismology::Accelerogram;
 
-use super::seismogram::{Place, Seismogram};
+use super::seismogram::{Place, Seismogram, base_motion};
 use crate::rows;
 
 /// Axes with their names in columns.
@@ -27,13 +27,17 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
     monitors.flat_map(|monitor| of(&monitor.name)).collect()
 }
 
-/// Mean accelerations (m/s²) of monitors since the last row, by the velocities of both; 0 in the first row. The values
-/// of [`columns`].
-pub fn accelerations(case: &Case, last: Option<&[f64]>, row: &[f64]) -> Vec<f64> {
+/// Mean accelerations (m/s²) of monitors since the last row, by the velocities of both and of the base; 0 in the first
+/// row. The values of [`columns`].
+pub fn accelerations(simulation: &Simulation, last: Option<&[f64]>, row: &[f64]) -> Vec<f64> {
+    let case = simulation.case();
     let Some(last) = last.filter(|last| is_shaken(case) && row[0] > last[0]) else {
         return vec![0.0; columns(case).len()];
     };
-    velocities(case).into_iter().flatten().map(|k| (row[k] - last[k]) / (row[0] - last[0])).collect()
+    let starts = &simulation.state().stage_starts;
+    let [before, now] = [last[0], row[0]].map(|time| base_motion(case, starts, time));
+    let mean = |(axis, k): (usize, usize)| (row[k] - last[k] + now[axis][0] - before[axis][0]) / (row[0] - last[0]);
+    velocities(case).into_iter().flat_map(|both| both.into_iter().enumerate()).map(mean).collect()
 }
 
 /// Places of the columns of the velocities of each monitor.
@@ -68,13 +72,15 @@ pub fn spans(case: &Case) -> Vec<Range<usize>> {
 pub struct Rows {
     /// Times (s).
     pub times: Vec<f64>,
-    /// Of each monitor with its name, along each axis: velocity (m/s) and displacement (m) at the times.
+    /// Of each monitor with its name, along each axis: velocity (m/s) and displacement (m) at the times, with the base's.
     monitors: Vec<(String, [Vec<[f64; 2]>; 2])>,
 }
 
 /// Reads the rows of spans of stages from `history.csv`, each with the row at the end of the stage before.
-pub fn read(path: &Path, case: &Case, spans: &[Range<usize>]) -> io::Result<Vec<Rows>> {
+pub fn read(path: &Path, simulation: &Simulation, spans: &[Range<usize>]) -> io::Result<Vec<Rows>> {
+    let case = simulation.case();
     let (speeds, ways) = (velocities(case), places(case, "u"));
+    let base = |time: f64| base_motion(case, &simulation.state().stage_starts, time);
     let blank = || Rows {
         times: Vec::new(),
         monitors: case.monitors.iter().map(|monitor| (monitor.name.clone(), Default::default())).collect(),
@@ -89,9 +95,9 @@ pub fn read(path: &Path, case: &Case, spans: &[Range<usize>]) -> io::Result<Vec<
         let span = spans.iter().position(|span| (span.start + 1..=span.end).contains(&stage));
         if let Some(rows) = span.map(|span| &mut found[span]) {
             if rows.times.is_empty() {
-                before.iter().for_each(|before| rows.push(before, &speeds, &ways));
+                before.iter().for_each(|before| rows.push(before, [&speeds, &ways], base(before[0])));
             }
-            rows.push(&row, &speeds, &ways);
+            rows.push(&row, [&speeds, &ways], base(row[0]));
         }
         before = Some(row);
     }
@@ -99,7 +105,7 @@ pub fn read(path: &Path, case: &Case, spans: &[Range<usize>]) -> io::Result<Vec<
 }
 
 impl Rows {
-    fn push(&mut self, row: &[f64], speeds: &[[usize; 2]], ways: &[[usize; 2]]) {
+    fn push(&mut self, row: &[f64], [speeds, ways]: [&[[usize; 2]]; 2], base: [[f64; 2]; 2]) {
         let number = |k: usize| row.get(k).copied().unwrap_or(f64::NAN);
         if self.times.last().is_some_and(|last| *last >= number(0)) {
             return;
@@ -107,7 +113,7 @@ impl Rows {
         self.times.push(number(0));
         for ((_, axes), (speed, way)) in self.monitors.iter_mut().zip(speeds.iter().zip(ways)) {
             for (k, along) in axes.iter_mut().enumerate() {
-                along.push([number(speed[k]), number(way[k])]);
+                along.push([number(speed[k]) + base[k][0], number(way[k]) + base[k][1]]);
             }
         }
     }

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use enmm::model::Case;
 use enmm::model::case::STANDARD_GRAVITY;
+use enmm::model::{Case, Simulation};
 use enmm_seismology::{DAMPING, periods};
 
 pub use seismogram::{Place, Seismogram, records};
@@ -68,12 +68,13 @@ impl EarthquakeRecord {
     ///
     /// # Errors
     /// Whatever the file system refuses, with the path in the message, or a file that no run has written.
-    pub(crate) fn all(case: &Case, history: &Path) -> io::Result<Vec<Self>> {
+    pub(crate) fn all(simulation: &Simulation, history: &Path) -> io::Result<Vec<Self>> {
+        let case = simulation.case();
         let spans = history::spans(case);
         if spans.is_empty() {
             return Ok(Vec::new());
         }
-        let read = history::read(history, case, &spans)?;
+        let read = history::read(history, simulation, &spans)?;
         Ok(spans.into_iter().zip(read).filter_map(|(stages, rows)| Self::of(case, stages, rows)).collect())
     }
 

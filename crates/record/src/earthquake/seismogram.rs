@@ -70,6 +70,37 @@ pub fn records(case: &Case) -> Vec<Seismogram> {
     bases.chain(waves).collect()
 }
 
+/// Velocity (m/s) and displacement (m) of the base along both axes at a time (s), where the stages of a case have begun
+/// at `starts` (s). The motions of a model count from its base.
+pub fn base_motion(case: &Case, starts: &[f64], time: f64) -> [[f64; 2]; 2] {
+    let mut sums = [[0.0; 2]; 2];
+    for base in &case.base_motions {
+        let start = case.motion_stage(base.stage.as_deref()).and_then(|stage| starts.get(stage));
+        let (Some(start), Some(rows)) = (start, &base.table) else { continue };
+        let along = &mut sums[usize::from(base.axis == Axis::Y)];
+        for (sum, part) in along.iter_mut().zip(motion_of(rows, base.kind, time - start)) {
+            *sum += base.scale * part;
+        }
+    }
+    sums
+}
+
+/// Velocity and displacement of rows at a time since the start of their stage.
+fn motion_of(rows: &[[f64; 2]], kind: BaseMotionKind, since: f64) -> [f64; 2] {
+    if kind == BaseMotionKind::Acceleration {
+        return Accelerogram::new(rows.to_vec()).map_or([0.0; 2], |motion| motion.motion_at(since));
+    }
+    let (mut velocity, mut way) = (0.0, 0.0);
+    for two in rows.windows(2).take_while(|two| two[0][0] < since) {
+        let [[start, first], [end, last]] = [two[0], two[1]];
+        let part = (since - start).min(end - start);
+        velocity = first + (last - first) * part / (end - start);
+        way += 0.5 * (first + velocity) * part;
+    }
+    let after = rows.last().map_or(0.0, |last| (since - last[0]).max(0.0));
+    [velocity, way + velocity * after]
+}
+
 fn of_base(case: &Case, k: usize, base: &BaseMotion) -> Option<Seismogram> {
     let rows: Vec<[f64; 2]> = base.table.as_ref()?.iter().map(|[time, value]| [*time, base.scale * value]).collect();
     let (acceleration, peaks) = match base.kind {

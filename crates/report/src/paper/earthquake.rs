@@ -25,7 +25,7 @@ const NEWMARK: &str = "\
 /// Records, motions and slips of a run that the ground shook, and the yield acceleration of a search.
 pub fn earthquake_chapter(records: &Records) -> String {
     let run = records.run.as_ref().map_or_else(String::new, shaken);
-    let seismic = records.fos.as_ref().map_or_else(String::new, |fos| seismic(&fos.json["seismic"]));
+    let seismic = records.fos.as_ref().map_or_else(String::new, seismic);
     chapter("Earthquake", &(run + &part("Yield acceleration and Newmark's block", &seismic)))
 }
 
@@ -106,7 +106,8 @@ fn place(place: &Value) -> Cell {
     of(0).zip(of(1)).map_or(Cell::Empty, |(x, y)| Cell::Mixed(vec![("x ".to_owned(), x), (", y ".to_owned(), y)]))
 }
 
-fn seismic(seismic: &Value) -> String {
+fn seismic(fos: &Record) -> String {
+    let seismic = &fos.json["seismic"];
     if !seismic.is_object() {
         return String::new();
     }
@@ -136,5 +137,6 @@ fn seismic(seismic: &Value) -> String {
     };
     let blocks: Vec<Vec<Cell>> = entries(&seismic["newmark"]).iter().map(newmark).collect();
     let head = ["Record", "PGA (g)", "Newmark's displacement", "The record reversed"];
-    paragraph(NEWMARK) + &facts(&rows) + &table(&head, &blocks)
+    let moves = figure(fos, "seismic", "Rock that moves at the least acceleration that the slope does not bear.");
+    paragraph(NEWMARK) + &facts(&rows) + &table(&head, &blocks) + &moves
 }
