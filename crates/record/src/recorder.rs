@@ -298,7 +298,9 @@ impl Recorder {
         let tensions = rows::tensions(simulation);
         let stage = simulation.state().stage;
         let mut row = rows::row(stage, report, &start.monitors, &after, start.dt, start.sweeps_mean, &tensions);
-        row.extend(earthquake::accelerations(simulation, self.history.last(), &row));
+        let columns = rows::columns(simulation.case());
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        row.extend(earthquake::accelerations(simulation, &names, self.history.last(), &row));
         self.history.row(&row)?;
         self.film.row(&row)
     }

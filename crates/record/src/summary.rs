@@ -421,8 +421,7 @@ pub(crate) struct RunRecord<'a> {
 
 impl Summary {
     pub(crate) fn new(simulation: &Simulation, record: RunRecord) -> Self {
-        let (model, state) = (simulation.model(), simulation.state());
-        let counters = &state.counters;
+        let (model, state, counters) = (simulation.model(), simulation.state(), &simulation.state().counters);
         Self {
             title: simulation.case().title.clone(),
             version: engine_version().to_owned(),

@@ -32,9 +32,9 @@ pub struct Seismic {
     pub found: Option<YieldAcceleration>,
     /// Ways of Newmark's block, where a yield acceleration was found.
     pub blocks: Vec<NewmarkBlock>,
-    /// What a run of the same case has left.
+    /// Motion that a run of the same case has left.
     pub run: Option<RunMotion>,
-    /// What to do where something is missing.
+    /// Remedy where something is missing.
     pub remedy: Option<String>,
 }
 
@@ -53,7 +53,7 @@ pub struct NewmarkBlock {
     pub reversed: f64,
 }
 
-/// What a run has left of its last stage with an earthquake.
+/// Motion that a run has left of its last stage with an earthquake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunMotion {
     /// The summary of the run.
@@ -148,7 +148,7 @@ fn newmark(record: &Seismogram, direction: Direction, yields: f64) -> NewmarkBlo
     }
 }
 
-/// What a run of the case has left in a folder, or in that above where the folder is that of a search within it. A
+/// Motion that a run of the case has left in a folder, or in that above where the folder is that of a search within it. A
 /// summary of another case or none that can be read is passed over: the answer says that there is none.
 fn run_of(directory: &Path, hash: &str) -> Option<RunMotion> {
     let is_within = directory.file_name().is_some_and(|name| name == FOLDER);
@@ -194,7 +194,7 @@ impl Seismic {
         record
     }
 
-    /// Writes the table of the trials, and draws the mechanism; removes those of an earlier search where there are none.
+    /// Writes the table of the trials, and draws the mechanism; removes those of an earlier search where none are.
     pub(crate) fn write(this: Option<&Self>, directory: &Path, title: &str, pictures: bool) -> io::Result<()> {
         let found = this.and_then(|seismic| seismic.found.as_ref());
         let failing = found.and_then(|found| found.failing.as_deref()).filter(|_| pictures);

@@ -27,8 +27,8 @@ impl Accelerogram {
     /// Pseudo-acceleration ω² max |u| (m/s²) of an oscillator of each period (s), above 0, with a damping ratio from 0
     /// to below 1, at rest before the motion and followed for a period beyond it.
     ///
-    /// The response is exact (Nigam and Jennings, 1969), in steps of a twentieth of the period or less, and so are peaks
-    /// between their ends.
+    /// The response is exact (Nigam and Jennings, 1969), in steps of a twentieth of the period or less, and so are
+    /// peaks between their ends.
     pub fn spectrum(&self, periods: &[f64], damping: f64) -> Vec<f64> {
         periods.iter().map(|period| self.response(2.0 * PI / period, damping)).collect()
     }

@@ -1,5 +1,5 @@
-//! Claim: the yield acceleration of a block on a plane is that of limit equilibrium, with cohesion too, by trials and by
-//! limit analysis, on either side, and is the same at any thread count.
+//! Claim: the yield acceleration of a block on a plane is that of limit equilibrium, with cohesion too, by trials and
+//! by limit analysis, on either side, and is the same at any thread count.
 
 use crate::common::parts::{rock, turn};
 use enmm::model::{Case, ExplicitAlone, Mechanism};

@@ -10,7 +10,6 @@ use enmm_io::files::at_path;
 use enmm_seismology::Accelerogram;
 
 use super::seismogram::{Place, Seismogram, base_motion};
-use crate::rows;
 
 /// Axes with their names in columns.
 const AXES: [(Axis, &str); 2] = [(Axis::X, "x"), (Axis::Y, "y")];
@@ -28,8 +27,8 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
 }
 
 /// Mean accelerations (m/s²) of monitors since the last row, by the velocities of both and of the base; 0 in the first
-/// row. The values of [`columns`].
-pub fn accelerations(simulation: &Simulation, last: Option<&[f64]>, row: &[f64]) -> Vec<f64> {
+/// row. The values of [`columns`]; `names` are those of the columns of the row.
+pub fn accelerations(simulation: &Simulation, names: &[&str], last: Option<&[f64]>, row: &[f64]) -> Vec<f64> {
     let case = simulation.case();
     let Some(last) = last.filter(|last| is_shaken(case) && row[0] > last[0]) else {
         return vec![0.0; columns(case).len()];
@@ -37,20 +36,14 @@ pub fn accelerations(simulation: &Simulation, last: Option<&[f64]>, row: &[f64])
     let starts = &simulation.state().stage_starts;
     let [before, now] = [last[0], row[0]].map(|time| base_motion(case, starts, time));
     let mean = |(axis, k): (usize, usize)| (row[k] - last[k] + now[axis][0] - before[axis][0]) / (row[0] - last[0]);
-    velocities(case).into_iter().flat_map(|both| both.into_iter().enumerate()).map(mean).collect()
-}
-
-/// Places of the columns of the velocities of each monitor.
-fn velocities(case: &Case) -> Vec<[usize; 2]> {
-    places(case, "v")
+    places(case, names, "v").into_iter().flat_map(|both| both.into_iter().enumerate()).map(mean).collect()
 }
 
 /// Places of the columns of a quantity of each monitor, along both axes.
-fn places(case: &Case, quantity: &str) -> Vec<[usize; 2]> {
-    let columns = rows::columns(case);
+fn places(case: &Case, names: &[&str], quantity: &str) -> Vec<[usize; 2]> {
     let place = |name: &str, axis: &str| {
         let wanted = format!("{name}_{quantity}{axis}");
-        columns.iter().position(|(column, _)| *column == wanted).unwrap_or_default()
+        names.iter().position(|column| *column == wanted).unwrap_or_default()
     };
     case.monitors.iter().map(|monitor| AXES.map(|(_, axis)| place(&monitor.name, axis))).collect()
 }
@@ -79,7 +72,6 @@ pub struct Rows {
 /// Reads the rows of spans of stages from `history.csv`, each with the row at the end of the stage before.
 pub fn read(path: &Path, simulation: &Simulation, spans: &[Range<usize>]) -> io::Result<Vec<Rows>> {
     let case = simulation.case();
-    let (speeds, ways) = (velocities(case), places(case, "u"));
     let base = |time: f64| base_motion(case, &simulation.state().stage_starts, time);
     let blank = || Rows {
         times: Vec::new(),
@@ -87,6 +79,9 @@ pub fn read(path: &Path, simulation: &Simulation, spans: &[Range<usize>]) -> io:
     };
     let mut found: Vec<Rows> = spans.iter().map(|_| blank()).collect();
     let mut reader = csv::Reader::from_path(path).map_err(io::Error::from).map_err(at_path(path))?;
+    let head = reader.headers().map_err(io::Error::from).map_err(at_path(path))?.clone();
+    let names: Vec<&str> = head.iter().map(|column| column.split(" [").next().unwrap_or_default()).collect();
+    let (speeds, ways) = (places(case, &names, "v"), places(case, &names, "u"));
     let mut before: Option<Vec<f64>> = None;
     for record in reader.records() {
         let record = record.map_err(io::Error::from).map_err(at_path(path))?;

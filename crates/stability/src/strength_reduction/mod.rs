@@ -342,7 +342,6 @@ fn reduce(
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
     let SecondOpinion { bound, bracket, ends } = opinion;
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
-    let free_area = base.free_area();
     let mut reduction = Reduction {
         trials: series.trials,
         low: series.low,
@@ -353,7 +352,7 @@ fn reduce(
         before_nudges,
         lost,
         rest: rest.effort,
-        free_area,
+        free_area: base.free_area(),
         bound,
         bracket,
         ends,

@@ -1,5 +1,5 @@
-//! The yield acceleration: the horizontal acceleration of all rock, out of the slope, at which it just stands at its own
-//! strength.
+//! The yield acceleration: the horizontal acceleration of all rock, out of the slope, at which it just stands at its
+//! own strength.
 
 use std::sync::atomic::AtomicBool;
 
