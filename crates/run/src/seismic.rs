@@ -148,8 +148,8 @@ fn newmark(record: &Seismogram, direction: Direction, yields: f64) -> NewmarkBlo
     }
 }
 
-/// Motion that a run of the case has left in a folder, or in that above where the folder is that of a search within it. A
-/// summary of another case or none that can be read is passed over: the answer says that there is none.
+/// Motion that a run of the case has left in a folder, or in that above where the folder is that of a search within it.
+/// A summary of another case or none that can be read is passed over: the answer says that there is none.
 fn run_of(directory: &Path, hash: &str) -> Option<RunMotion> {
     let is_within = directory.file_name().is_some_and(|name| name == FOLDER);
     let above = directory.parent().filter(|_| is_within).map(Path::to_owned);

@@ -26,8 +26,8 @@ fn a_shaken_block_that_slips_is_warned_of() {
     assert!(warning.ends_with("(--set mesh.size=0.3)"), "{warning}");
 }
 
-/// A block that friction holds goes with its base: a sine of A = 1 m/s² and 2 Hz has the peak velocity 2A/ω, the way At/ω
-/// and the Arias intensity πA²t/(4g).
+/// A block that friction holds goes with its base: a sine of A = 1 m/s² and 2 Hz has the peak velocity 2A/ω, the way
+/// At/ω and the Arias intensity πA²t/(4g).
 #[test]
 fn a_block_that_rides_on_a_shaken_base_has_its_motion() {
     let (amplitude, frequency, duration) = (1.0, 2.0, 1.0);

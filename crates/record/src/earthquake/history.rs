@@ -65,7 +65,7 @@ pub fn spans(case: &Case) -> Vec<Range<usize>> {
 pub struct Rows {
     /// Times (s).
     pub times: Vec<f64>,
-    /// Of each monitor with its name, along each axis: velocity (m/s) and displacement (m) at the times, with the base's.
+    /// Of each monitor with its name, along each axis: velocity (m/s) and displacement (m) at the times.
     monitors: Vec<(String, [Vec<[f64; 2]>; 2])>,
 }
 

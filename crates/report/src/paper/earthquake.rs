@@ -12,8 +12,8 @@ use Digits::Three;
 /// How the measures are to be read.
 const MEASURES: &str = "\
     PGA, PGV and PGD are the largest acceleration, velocity and displacement along an axis; displacements count from \
-    the start of the stage and hold what remains. The Arias intensity is π/(2g) ∫ a² dt, and D5–95 the time in which it \
-    grows from 5 to 95 %. Records are shown as they act: motions of a base as they are, waves by the motion of an \
+    the start of the stage and hold what remains. The Arias intensity is π/(2g) ∫ a² dt, and D5–95 the time in which \
+    it grows from 5 to 95 %. Records are shown as they act: motions of a base as they are, waves by the motion of an \
     outcrop, which is twice the wave. Accelerations of monitors are means between rows of the history.";
 
 /// How Newmark's displacement is to be read.
