@@ -21,7 +21,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 37] = [
+const FILES: [&str; 48] = [
     "blocks.csv",
     ALONG,
     "bound.json",
@@ -30,6 +30,7 @@ const FILES: [&str; 37] = [
     "covers.svg",
     "deformed.png",
     "deformed.svg",
+    "earthquake.csv",
     "energy.png",
     "energy.svg",
     "ensemble.csv",
@@ -51,10 +52,18 @@ const FILES: [&str; 37] = [
     LINES,
     "model.png",
     "model.svg",
+    "record.png",
+    "record.svg",
     "report.html",
     "report_a4.html",
     "report_a4.pdf",
     "run.pvd",
+    "seismic.csv",
+    "seismic.png",
+    "seismic.svg",
+    "spectra.csv",
+    "spectra.png",
+    "spectra.svg",
     "summary.json",
     "sweep.csv",
     "sweep.json",

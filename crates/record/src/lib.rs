@@ -7,6 +7,7 @@ pub mod along;
 pub mod blocks;
 mod breaks;
 pub mod changes;
+pub mod earthquake;
 pub mod film;
 mod flow;
 mod folder;

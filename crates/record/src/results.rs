@@ -18,6 +18,7 @@ use enmm_picture::{
 };
 use enmm_report::FILM;
 
+use crate::earthquake::{self, EarthquakeRecord};
 use crate::flow::FLOW;
 use crate::folder::{FRAMES, make_frames};
 use crate::lines::{LINES, LineRecord, profiles};
@@ -50,6 +51,7 @@ pub fn has_run(directory: &Path) -> bool {
 pub fn clear(directory: &Path) -> io::Result<()> {
     stage_pictures(directory)?.iter().try_for_each(|picture| fs::remove_file(picture).map_err(at_path(picture)))?;
     [FLOW, LINES].iter().try_for_each(|name| remove_table(&directory.join(name)))?;
+    earthquake::clear(directory)?;
     make_frames(directory)?;
     frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
 }
@@ -162,9 +164,12 @@ pub fn draw_checked(simulation: &Simulation, directory: &Path) -> io::Result<()>
     draw_model(simulation, directory)
 }
 
-/// Draws the slope as it is now, and the histories.
-pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
+/// Draws the slope as it is now, the histories and the spectra of earthquakes.
+pub fn draw_end(simulation: &Simulation, earthquakes: &[EarthquakeRecord], directory: &Path) -> io::Result<()> {
     let case = simulation.case();
+    if case.output.pictures.include(PictureKind::Spectra) && !earthquakes.is_empty() {
+        earthquake::draw(directory, &case.title, earthquakes)?;
+    }
     if case.output.pictures.include(PictureKind::Deformed) {
         let snapshot = Snapshot::of(simulation);
         let title = match &case.output.since {
@@ -238,6 +243,7 @@ pub fn draw_stage(
             | PictureKind::Deformed
             | PictureKind::History
             | PictureKind::Energy
+            | PictureKind::Spectra
             | PictureKind::Covers => Vec::new(),
         };
         for (picture, name) in pictures.iter().zip(names) {

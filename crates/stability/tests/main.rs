@@ -26,3 +26,4 @@ mod soil_slope;
 mod support;
 mod tutorials;
 mod weak_planes;
+mod yield_acceleration;
