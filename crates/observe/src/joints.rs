@@ -89,7 +89,8 @@ impl Joints {
     pub fn along(&self, boundary: &Boundary, point: EdgeId) -> Vec<u32> {
         let end = boundary.nodes.point[boundary.nodes.next[boundary.node_before[point]]];
         let edges = std::iter::successors(Some(point), |&edge| Some(boundary.after(edge)).filter(|&next| next != end));
-        let first = |edge: EdgeId| self.on(edge).iter().filter(move |&&k| self.pieces[k as usize].edges[0] == edge);
+        let Self(faces) = self;
+        let first = |edge: EdgeId| faces.on(edge).iter().filter(move |&&k| faces.pieces[k as usize].edges[0] == edge);
         edges.flat_map(first).copied().collect()
     }
 
@@ -104,7 +105,7 @@ impl Joints {
             let JointPiece { opening, slip, .. } = seen(simulation, &positions, piece);
             [opening, slip]
         };
-        self.pieces.iter().map(moved).collect()
+        self.0.pieces.iter().map(moved).collect()
     }
 
     /// The joints now; those of excavated blocks are left out.
