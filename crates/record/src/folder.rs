@@ -58,6 +58,7 @@ const FILES: [&str; 37] = [
     "sweep.json",
     "sweep.png",
     "sweep.svg",
+    "sweep.xlsx",
 ];
 
 /// A folder of results that no other process writes to until this is dropped.
