@@ -20,7 +20,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 37] = [
+const FILES: [&str; 38] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
