@@ -4,7 +4,8 @@ use std::path::Path;
 
 use enmm_export::{Instant, Scene, drawing, features};
 use enmm_report::{
-    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, FilmWriter, Frame, Head, Mesh, Outline, Structures, SupportFrame,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, FilmWriter, Frame, Head, Mesh, Outline, Structures,
+    SupportFrame,
 };
 use serde_json::Value;
 
