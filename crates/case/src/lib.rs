@@ -57,18 +57,19 @@ pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_law::{Breaks, DILATION_SLIP, JointLaw, JointLawKind};
 pub use joint_set::{
-    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, Section, Side, Tessellation,
+    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, NamedJoint, Section, Side,
+    Tessellation,
 };
 pub use key::Invalid;
 pub use load::{Gravity, InitialVelocity, Load, LoadKind};
 pub use notes::{FmuNotes, ReportNotes};
 pub use orientation::{AZIMUTH, Orientation, Orientations, dip_in_section, trace_angle};
-pub use output::{Monitor, Output};
+pub use output::{JointMonitor, Line, Monitor, Output};
 pub use pictures::{PictureKind, Pictures};
 pub use ponding::{Pond, PondPart};
 pub use port::Port;
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
-pub use record::BaseMotionKind;
+pub use record::{BaseMotionKind, STANDARD_GRAVITY};
 pub use rock::{Plane, Rock};
 pub use skin::Skin;
 pub use solver::{CornerContacts, Integrator, Newmark, Solver};
@@ -195,6 +196,12 @@ pub struct Case {
     /// Points whose motion goes into the history.
     #[serde(default, rename = "monitor")]
     pub monitors: Vec<Monitor>,
+    /// Gauges across joints.
+    #[serde(default, rename = "joint_monitor", skip_serializing_if = "Vec::is_empty")]
+    pub joint_monitors: Vec<JointMonitor>,
+    /// Rows of points, as of inclinometers.
+    #[serde(default, rename = "line", skip_serializing_if = "Vec::is_empty")]
+    pub lines: Vec<Line>,
     /// Files to write and their intervals.
     #[serde(default)]
     pub output: Output,
@@ -220,6 +227,12 @@ impl Case {
     /// Whether any rock has a strength that can be exceeded.
     pub fn yields(&self) -> bool {
         self.rocks.values().any(Rock::yields)
+    }
+
+    /// The stage with whose start displacements of outputs begin to count, if not with that of the run.
+    pub fn since_stage(&self) -> Option<usize> {
+        let since = self.output.since.as_ref()?;
+        self.stages.iter().position(|stage| stage.name == *since).map(|stage| stage + 1)
     }
 
     /// Whether any rock breaks.

@@ -22,8 +22,9 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, \
          bridge, cut, domain, drain, ensemble, fix, flow, fmu, fracture, free_field, gravity, head, in_situ, \
-         initial_velocity, joint, joint_law, joint_set, law_region, layers, load, mesh, monitor, output, port, \
-         quiet, rain, random, random_correlation, report, rock, section, skin, solver, stage, tessellation, \
+         initial_velocity, joint, joint_law, joint_monitor, joint_set, law_region, layers, line, load, mesh, monitor, \
+         output, port, quiet, rain, random, random_correlation, report, rock, section, skin, solver, stage, \
+         tessellation, \
          title, transform, water; rename or remove it",
     );
 }
@@ -72,7 +73,8 @@ fn wrong_type_says_expected_and_found() {
 #[test]
 fn wrong_type_names_all_types_and_words() {
     let kinds = "model, deformed, history, energy, displacement, joints, joint_stress, stress, velocity, covers, \
-                 displacement_contours, mean_stress_contours, strength, flow";
+                 displacement_contours, mean_stress_contours, strength, flow, lines, \
+                 spectra";
     for (value, shown) in [("3", "the integer 3"), ("\"model\"", "the string \"model\"")] {
         assert_refused(
             "frame_interval = 0.5",

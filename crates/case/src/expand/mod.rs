@@ -1,6 +1,6 @@
 //! Expansion of the words of the field in a case into the plain data that the engine builds: dips become angles,
 //! bolt patterns and skins bolts, construction joints joints with a law, K0 a stress, records accelerations of the base
-//! and velocities of waves. This is the only place that does so.
+//! and velocities of waves, and shifted surfaces of water are where they are. This is the only place that does so.
 
 mod bolts;
 mod cells;
@@ -46,6 +46,7 @@ impl Case {
         bolts::expand(self, &mut told)?;
         skins::expand(self, &mut told)?;
         motions::expand(self)?;
+        self.shift_water()?;
         Ok(told)
     }
 
@@ -93,6 +94,7 @@ impl Case {
             ("skin", !self.skins.is_empty()),
             ("base_motion", self.base_motions.iter().any(motions::is_short_base)),
             ("quiet", self.quiets.iter().any(motions::is_short_wave)),
+            ("water", self.water.as_ref().is_some_and(|water| water.shift.is_some())),
         ];
         short.iter().find(|(_, is)| *is).map_or(Ok(()), |(name, _)| {
             let message = "is not expanded; load the case through `enmm_io`, or call `Case::expand`";

@@ -36,10 +36,11 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     let mut warnings = Vec::from_iter(left_out_stages(&case));
     case.keep_stages(count);
     case.refuse_cuts("limit analysis")?;
-    if !case.base_motions.is_empty() {
-        warnings.push("base motion is left out: give a seismic coefficient as a load of kind body".into());
+    if !case.base_motions.is_empty() || case.quiets.iter().any(|quiet| quiet.wave.is_some()) {
+        warnings.push("base motion and waves are left out: give a seismic coefficient as a load of kind body".into());
         case.base_motions.clear();
     }
+    case.hold_quiet_edges();
     refuse_motion(&case)?;
     refuse_curves(&case)?;
     refuse_bonds(&case)?;
@@ -92,25 +93,13 @@ pub fn refuse_flow(case: &Case) -> Result<(), Invalid> {
 }
 
 fn refuse_motion(case: &Case) -> Result<(), Invalid> {
-    let root = Key::root();
-    let lists = [
-        ("quiet", case.quiets.len(), "a quiet boundary answers to motion"),
-        ("free_field", case.free_fields.len(), "a free field answers to motion"),
-    ];
-    if let Some((name, _, why)) = lists.into_iter().find(|(_, count, _)| *count > 0) {
-        let message = format!(
-            "{why}, but limit analysis knows no time: leave it out, hold the boundary by [[fix]], and give a seismic \
-             coefficient as a load of kind \"body\""
-        );
-        return Err(refused(root.field(name).index(0), message));
-    }
     let varies =
         |table: &Option<Vec<[f64; 2]>>| table.as_ref().is_some_and(|rows| rows.iter().any(|row| row[1] != rows[0][1]));
     match case.loads.iter().position(|load| varies(&load.table)) {
         Some(k) => {
             let message = "changes in time, but limit analysis knows no time: leave out the table and give the load \
                            that counts";
-            Err(refused(root.field("load").index(k).field("table"), message))
+            Err(refused(Key::root().field("load").index(k).field("table"), message))
         }
         None => Ok(()),
     }
