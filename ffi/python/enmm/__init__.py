@@ -87,7 +87,19 @@ from ._results import Fos, Result, RunError
 from ._table import Table
 from ._tasks import bound, check, fos, run
 from ._types import Cut, Event, FlowInputs, Inputs, PortInputs
-from ._values import BLOCK_FIELDS, Energies, InletState, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
+from ._values import (
+    BLOCK_FIELDS,
+    Energies,
+    InletState,
+    JointMonitorState,
+    MonitorState,
+    MonitorStress,
+    PortState,
+    Progress,
+    StartInfo,
+    StepInfo,
+    Totals,
+)
 
 __version__ = "0.1.0"
 
@@ -135,6 +147,7 @@ __all__ = [
     "Inputs",
     "Interpolation",
     "InvalidArgumentError",
+    "JointMonitorState",
     "Library",
     "LibraryError",
     "LogLevel",
@@ -142,6 +155,7 @@ __all__ = [
     "MemoryPart",
     "Model",
     "MonitorState",
+    "MonitorStress",
     "NameKind",
     "NotFoundError",
     "NullArgumentError",

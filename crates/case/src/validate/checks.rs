@@ -217,6 +217,13 @@ impl<'a> Names<'a> {
         Self { what: "dynamic stage", remedy: "add [[stage]] with this `name` and `kind = \"dynamic\"`", known }
     }
 
+    /// Returns the stages of a case after which another one follows.
+    pub fn of_followed_stages(case: &'a Case) -> Self {
+        let before_last = &case.stages[..case.stages.len().saturating_sub(1)];
+        let known = before_last.iter().map(|stage| stage.name.as_str()).collect();
+        Self { what: "stage that another one follows", remedy: "leave it out to count from the start", known }
+    }
+
     /// Returns the named bolts of a case.
     pub fn of_bolts(case: &'a Case) -> Self {
         let known = case.bolts.iter().filter_map(|bolt| bolt.name.as_deref()).collect();

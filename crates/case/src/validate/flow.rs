@@ -23,6 +23,7 @@ pub fn validate_flow(root: &Key, case: &Case) -> Check {
     flow.check(&key)?;
     validate_apertures(root, flow, case)?;
     validate_pace(&key, flow, case)?;
+    validate_part(&key, flow, case)?;
     if [case.gravity.x, case.gravity.y] == [0.0; 2] {
         return fail(&key, "needs gravity, which drives the water, and the case has 0 m/s²; add it or remove [flow]");
     }
@@ -47,6 +48,14 @@ fn validate_pace(key: &Key, flow: &Flow, case: &Case) -> Check {
         Plain(pace)
     );
     fail(&key.field("pace"), message)
+}
+
+/// Checks that an opening from which pieces part has an effect.
+fn validate_part(key: &Key, flow: &Flow, case: &Case) -> Check {
+    let is_dynamic = |stage: &Stage| stage.kind == StageKind::Dynamic;
+    let Some(part) = flow.part.filter(|_| !case.stages.iter().any(is_dynamic)) else { return Ok(()) };
+    let message = format!("is {} m, and has no effect without a dynamic stage; add one, or remove it", Plain(part));
+    fail(&key.field("part"), message)
 }
 
 fn validate_head(key: &Key, head: &Head) -> Check {
