@@ -1,0 +1,213 @@
+//! Which stretch of a face is no way out.
+//!
+//! Where a third body lies on a face, within a ledge and ten degrees, that stretch is *covered*. A body that has come in
+//! is not pushed out through a covered stretch, **if it also comes in through the face beside it, near the corner that
+//! both share**: there is the way out, and that face's cell reaches on to the perpendicular at the corner instead of to
+//! the bisector. So a block that is pressed over the closed joint of a floor lies on both of its blocks, and neither
+//! pushes it along. The rule is one of geometry: it knows no history and no springs. Only the height of a ledge comes
+//! in, which stays a way out.
+
+use crate::clip::Polygon;
+use crate::{Band, Body, Bound, Cell, Rule, Vector};
+
+/// A stretch of a face on which another body lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cover {
+    /// That body.
+    pub body: usize,
+    /// Where the stretch begins and ends (m along the face).
+    pub stretch: [f64; 2],
+}
+
+/// Covers of all faces of all bodies.
+#[derive(Debug, Clone, Default)]
+pub struct Covers {
+    faces: Vec<Vec<Vec<Cover>>>,
+}
+
+impl Covers {
+    /// Finds the covers of all faces.
+    pub fn find(&mut self, bodies: &[Body], rule: &Rule) {
+        self.faces.resize_with(bodies.len(), Vec::new);
+        for (faces, body) in self.faces.iter_mut().zip(bodies) {
+            faces.iter_mut().for_each(Vec::clear);
+            faces.resize_with(body.outline.len(), Vec::new);
+        }
+        for (under, faces) in bodies.iter().zip(&mut self.faces) {
+            let others = bodies.iter().enumerate().filter(|(_, over)| !std::ptr::eq(*over, under));
+            for (index, over) in others.filter(|(_, over)| under.is_near(over, rule.ledge)) {
+                for (face, covers) in faces.iter_mut().enumerate() {
+                    let axes = under.faces[face];
+                    for &other in &over.faces {
+                        let stretch = covered(&axes, &other, rule);
+                        covers.extend(stretch.map(|stretch| Cover { body: index, stretch }));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Covers of a face.
+    pub fn of(&self, body: usize, face: usize) -> &[Cover] {
+        &self.faces[body][face]
+    }
+
+    /// Whether there is none at all.
+    fn is_bare(&self, body: usize, face: usize) -> bool {
+        self.faces.get(body).is_none_or(|faces| faces[face].is_empty())
+    }
+}
+
+/// The stretch of a face on which another one lies.
+fn covered(face: &crate::Face, other: &crate::Face, rule: &Rule) -> Option<[f64; 2]> {
+    if face.tangent.dot(other.tangent) > -rule.flush {
+        return None;
+    }
+    let ends = [other.start + other.tangent * other.length, other.start].map(|end| face.local(end));
+    let [from, to] = [ends[0].x.max(0.0), ends[1].x.min(face.length)];
+    if from >= to {
+        return None;
+    }
+    let depth = |s: f64| ends[0].y + (ends[1].y - ends[0].y) * (s - ends[0].x) / (ends[1].x - ends[0].x);
+    (depth(from).abs().max(depth(to).abs()) <= rule.ledge).then_some([from, to])
+}
+
+/// How one body sees the face of another one: the parts of the cell that are open to it.
+#[derive(Debug, Clone, Default)]
+pub struct Access {
+    /// Depths (m) at which the side beside the start and the end of the face is closed.
+    closed: [Vec<[f64; 2]>; 2],
+    /// Stretches of the face that are open; all of it, and what lies beside it, where there is none.
+    open: Vec<[f64; 2]>,
+    is_parted: bool,
+    polygon: Polygon,
+}
+
+/// A face of a body, and the body that comes in.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a> {
+    /// All bodies.
+    pub bodies: &'a [Body],
+    /// Their covers.
+    pub covers: &'a Covers,
+    /// Constants.
+    pub rule: &'a Rule,
+    /// The body that is viewed.
+    pub viewed: usize,
+    /// Its face.
+    pub face: usize,
+    /// The body that comes in.
+    pub viewer: usize,
+}
+
+impl View<'_> {
+    fn body(&self) -> &Body {
+        &self.bodies[self.viewed]
+    }
+
+    /// Whether the viewer comes in through a face near its start or end: it is inside there and reaches out.
+    fn comes_through(&self, face: usize, at_end: bool, polygon: &mut Polygon) -> bool {
+        let axes = self.body().faces[face];
+        let Rule { beside, ledge, .. } = *self.rule;
+        polygon.set(self.bodies[self.viewer].outline.points.iter().map(|&p| axes.local(p)));
+        polygon.keep(Vector::new(0.0, 1.0), beside);
+        let [from, to] =
+            if at_end { [(axes.length - beside).max(0.0), axes.length] } else { [0.0, beside.min(axes.length)] };
+        polygon.keep(Vector::new(-1.0, 0.0), -from);
+        polygon.keep(Vector::new(1.0, 0.0), to);
+        let depths = polygon.corners.iter().map(|corner| corner.at.y);
+        let [low, high] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)]);
+        polygon.corners.len() > 2 && low < -ledge && high > 0.0
+    }
+
+    /// Finds which parts of the cell are open.
+    pub fn access(&self, access: &mut Access) {
+        let outline = &self.body().outline;
+        let Access { closed, open, is_parted, polygon } = access;
+        for (end, closed) in closed.iter_mut().enumerate() {
+            closed.clear();
+            let side = if end == 1 { outline.next(self.face) } else { outline.previous(self.face) };
+            if !self.covers.is_bare(self.viewed, side) {
+                self.close_end(end == 1, side, closed);
+                if !closed.is_empty() && !self.comes_through(self.face, end == 1, polygon) {
+                    closed.clear();
+                }
+            }
+        }
+        open.clear();
+        *is_parted = !self.covers.is_bare(self.viewed, self.face) && self.leaves_beside(polygon);
+        if *is_parted {
+            self.part(open);
+        }
+    }
+
+    /// Depths under the face at which third bodies cover the side beside its start or end.
+    fn close_end(&self, at_end: bool, side: usize, closed: &mut Vec<[f64; 2]>) {
+        let [own, beside] = [self.face, side].map(|face| self.body().faces[face]);
+        let sine = own.tangent.cross(beside.tangent).abs();
+        let third = self.covers.of(self.viewed, side).iter().filter(|cover| cover.body != self.viewer);
+        closed.extend(third.map(|Cover { stretch: [from, to], .. }| {
+            let from_corner = if at_end { [*from, *to] } else { [beside.length - to, beside.length - from] };
+            from_corner.map(|way| way * sine)
+        }));
+    }
+
+    /// Whether the viewer leaves a covered face through one beside it: it does not lie on it, but comes in there.
+    fn leaves_beside(&self, polygon: &mut Polygon) -> bool {
+        let outline = &self.body().outline;
+        let covers = self.covers.of(self.viewed, self.face);
+        !covers.iter().any(|cover| cover.body == self.viewer)
+            && (self.comes_through(outline.next(self.face), false, polygon)
+                || self.comes_through(outline.previous(self.face), true, polygon))
+    }
+
+    /// What is left of the face beside the covers on it. What lies beyond its ends belongs to the cover there.
+    fn part(&self, open: &mut Vec<[f64; 2]>) {
+        let length = self.body().faces[self.face].length;
+        open.push([f64::NEG_INFINITY, f64::INFINITY]);
+        for Cover { stretch: [from, to], .. } in self.covers.of(self.viewed, self.face) {
+            let from = if *from <= 0.0 { f64::NEG_INFINITY } else { *from };
+            let to = if *to >= length { f64::INFINITY } else { *to };
+            let parts: Vec<[f64; 2]> = open.drain(..).flat_map(|[a, b]| [[a, b.min(from)], [a.max(to), b]]).collect();
+            open.extend(parts.into_iter().filter(|[a, b]| a < b));
+        }
+    }
+}
+
+/// A part of a cell that is open, in which the same bounds and the same closed sides limit it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OpenBand {
+    /// Its bounds.
+    pub band: Band,
+    /// Whether the side beside its start and its end is closed.
+    pub closed: [bool; 2],
+    /// Where on the face it begins and ends (m); infinite where only the bounds limit it.
+    pub stretch: [f64; 2],
+}
+
+impl Access {
+    /// Calls a function with each open part of a cell, of a face of some length (m), down to a depth (m).
+    pub fn each_band(&self, cell: &Cell, length: f64, deepest: f64, mut with: impl FnMut(OpenBand)) {
+        let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
+        let open: &[[f64; 2]] = if self.is_parted { &self.open } else { &whole };
+        for band in cell.bands.iter().filter(|band| band.depths[0] < deepest) {
+            let mut from = band.depths[0];
+            while from < band.depths[1] {
+                let to = self.levels().filter(|&level| level > from).fold(band.depths[1], f64::min);
+                let closed = [0, 1].map(|end| self.closed[end].iter().any(|[a, b]| *a <= from && to <= *b));
+                let bounds = [0, 1].map(|end| {
+                    let perpendicular = Bound { at: if end == 0 { 0.0 } else { length }, slope: 0.0 };
+                    if closed[end] { perpendicular } else { band.bounds[end] }
+                });
+                let band = Band { depths: [from, to], bounds };
+                open.iter().for_each(|&stretch| with(OpenBand { band, closed, stretch }));
+                from = to;
+            }
+        }
+    }
+
+    /// Depths (m) at which a closed side begins or ends.
+    fn levels(&self) -> impl Iterator<Item = f64> + '_ {
+        self.closed.iter().flatten().flatten().copied()
+    }
+}
