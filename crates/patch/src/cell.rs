@@ -86,7 +86,8 @@ pub fn cells(outline: &Outline, reach: f64) -> Vec<Cell> {
             fronts[k].since = depth;
         }
         fronts[gone].is_active = false;
-        let slope = (p != n).then(|| half_turn(&faces[p], &faces[n])).flatten();
+        // A face vanishes only where the outline turns to the left on the whole. Beyond half a turn nothing is left.
+        let slope = half_turn(&faces[p], &faces[n]).filter(|&slope| p != n && slope > 0.0);
         let Some(slope) = slope else {
             (fronts[p].is_active, fronts[n].is_active) = (false, false);
             (fronts[p].next, fronts[n].previous) = (n, p);

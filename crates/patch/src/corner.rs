@@ -8,7 +8,7 @@
 //! A corner that is *level* with a third body, whose face goes on beyond it, is the lip of a mouth. It acts along the
 //! normal of its free side alone, or else a corner that is pressed over the mouth would be pushed along.
 
-use crate::cover::{Access, OpenBand, View};
+use crate::cover::{Access, OpenBand, View, level_face};
 use crate::{Body, Covers, Rule, Vector};
 
 /// Where a corner lies in another body: the depth is under a face that is open to it.
@@ -44,7 +44,8 @@ fn share_in(open: &OpenBand, at: Vector, ledge: f64) -> f64 {
     if !(within(open.band.depths, at.y) && within(open.stretch, at.x)) {
         return 0.0;
     }
-    let [start, end] = open.band.bounds.map(|bound| bound.position(at.y));
+    let bound = |end: usize| if open.closed[end] { open.band.bounds[end] } else { open.bare[end] };
+    let [start, end] = [0, 1].map(|end| bound(end).position(at.y));
     let shares = [(at.x - start, open.closed[0]), (end - at.x, open.closed[1])].map(|(inside, is_closed)| {
         if is_closed { (0.5 + 0.5 * inside / ledge).clamp(0.0, 1.0) } else { f64::from(u8::from(inside >= 0.0)) }
     });
@@ -69,7 +70,7 @@ pub fn share_of_level(
     let is_level = |face: usize, free: Vector| {
         let third = covers.of(owner, face).iter().filter(|cover| cover.body != from && reaches(face, cover.stretch));
         let point = body.outline.points[corner];
-        third.into_iter().any(|cover| goes_on(&bodies[cover.body], point, free, rule))
+        third.into_iter().any(|cover| level_face(&bodies[cover.body], point, free, rule).is_some())
     };
     let levels = [is_level(before, normals[1]), is_level(corner, normals[0])];
     let free = match levels {
@@ -84,11 +85,4 @@ pub fn share_of_level(
     }
     let way = ((sine - rule.fade[0]) / (rule.fade[1] - rule.fade[0])).clamp(0.0, 1.0);
     1.0 - way * way * (3.0 - 2.0 * way)
-}
-
-/// Whether a body has a corner at a point and a face there that is level with a normal.
-fn goes_on(body: &Body, point: Vector, normal: Vector, rule: &Rule) -> bool {
-    let is_there = |k: &usize| (body.outline.points[*k] - point).norm() <= 2.0 * rule.ledge;
-    let is_level = |face: usize| body.faces[face].normal().dot(normal) > rule.level;
-    (0..body.outline.len()).filter(is_there).any(|k| is_level(k) || is_level(body.outline.previous(k)))
 }

@@ -2,8 +2,8 @@
 //!
 //! Where a third body lies on a face, within a ledge and ten degrees, that stretch is *covered*. A body that has come in
 //! is not pushed out through a covered stretch, **if it also comes in through the face beside it, near the corner that
-//! both share**: there is the way out, and that face's cell reaches on to the perpendicular at the corner instead of to
-//! the bisector. So a block that is pressed over the closed joint of a floor lies on both of its blocks, and neither
+//! both share**: there is the way out, and that face's cell reaches on to the covered side itself instead of to the
+//! bisector. So a block that is pressed over the closed joint of a floor lies on both of its blocks, and neither
 //! pushes it along. The rule is one of geometry: it knows no history and no springs. Only the height of a ledge comes
 //! in, which stays a way out.
 
@@ -72,11 +72,23 @@ fn covered(face: &crate::Face, other: &crate::Face, rule: &Rule) -> Option<[f64;
     (depth(from).abs().max(depth(to).abs()) <= rule.ledge).then_some([from, to])
 }
 
+/// The face of a body that begins or ends at a point and is level with a normal there; whether it ends.
+pub(crate) fn level_face(body: &Body, point: Vector, normal: Vector, rule: &Rule) -> Option<(usize, bool)> {
+    let is_there = |k: &usize| (body.outline.points[*k] - point).norm() <= 2.0 * rule.ledge;
+    let is_level = |(face, _): &(usize, bool)| body.faces[*face].normal().dot(normal) > rule.level;
+    let at = (0..body.outline.len()).filter(is_there);
+    at.flat_map(|k| [(k, false), (body.outline.previous(k), true)]).find(is_level)
+}
+
 /// How one body sees the face of another one: the parts of the cell that are open to it.
 #[derive(Debug, Clone, Default)]
 pub struct Access {
     /// Depths (m) at which the side beside the start and the end of the face is closed.
     closed: [Vec<[f64; 2]>; 2],
+    /// Change along the face per depth of those sides.
+    sides: [f64; 2],
+    /// Whether the viewer lies on them itself, along more than a ledge: its corners may leave there.
+    lies: [bool; 2],
     /// Stretches of the face that are open; all of it, and what lies beside it, where there is none.
     open: Vec<[f64; 2]>,
     is_parted: bool,
@@ -105,9 +117,25 @@ impl View<'_> {
         &self.bodies[self.viewed]
     }
 
-    /// Whether the viewer comes in through a face near its start or end: it is inside there and reaches out.
-    fn comes_through(&self, face: usize, at_end: bool, polygon: &mut Polygon) -> bool {
-        let axes = self.body().faces[face];
+    /// Whether the viewer comes in through a face near its start or end, or through the face of a third body that
+    /// covers the side there and goes on level.
+    fn comes_through(&self, face: usize, at_end: bool, side: usize, polygon: &mut Polygon) -> bool {
+        if self.crosses(self.viewed, face, at_end, polygon) {
+            return true;
+        }
+        let body = self.body();
+        let (axes, normal) = (body.faces[face], body.faces[face].normal());
+        let corner = if at_end { axes.global(Vector::new(axes.length, 0.0)) } else { axes.start };
+        let third = self.covers.of(self.viewed, side).iter().filter(|cover| cover.body != self.viewer);
+        third.into_iter().any(|cover| {
+            let level = level_face(&self.bodies[cover.body], corner, normal, self.rule);
+            level.is_some_and(|(face, at_end)| self.crosses(cover.body, face, at_end, polygon))
+        })
+    }
+
+    /// Whether the viewer is inside a face of a body near its start or end, and reaches out there.
+    fn crosses(&self, body: usize, face: usize, at_end: bool, polygon: &mut Polygon) -> bool {
+        let axes = self.bodies[body].faces[face];
         let Rule { beside, ledge, .. } = *self.rule;
         polygon.set(self.bodies[self.viewer].outline.points.iter().map(|&p| axes.local(p)));
         polygon.keep(Vector::new(0.0, 1.0), beside);
@@ -123,13 +151,17 @@ impl View<'_> {
     /// Finds which parts of the cell are open.
     pub fn access(&self, access: &mut Access) {
         let outline = &self.body().outline;
-        let Access { closed, open, is_parted, polygon } = access;
+        let Access { closed, sides, lies, open, is_parted, polygon } = access;
         for (end, closed) in closed.iter_mut().enumerate() {
             closed.clear();
             let side = if end == 1 { outline.next(self.face) } else { outline.previous(self.face) };
-            if !self.covers.is_bare(self.viewed, side) {
+            if self.covers.is_bare(self.viewed, side) {
+                continue;
+            }
+            if let Some(slope) = self.slope_of_side(end == 1, side) {
+                (sides[end], lies[end]) = (slope, self.lies_on(side) > self.rule.ledge);
                 self.close_end(end == 1, side, closed);
-                if !closed.is_empty() && !self.comes_through(self.face, end == 1, polygon) {
+                if !closed.is_empty() && !self.comes_through(self.face, end == 1, side, polygon) {
                     closed.clear();
                 }
             }
@@ -139,6 +171,22 @@ impl View<'_> {
         if *is_parted {
             self.part(open);
         }
+    }
+
+    /// Length (m) of a face on which the viewer lies itself.
+    fn lies_on(&self, face: usize) -> f64 {
+        let is_its = |cover: &&Cover| cover.body == self.viewer;
+        let own = self.covers.of(self.viewed, face).iter().filter(is_its);
+        own.map(|cover| cover.stretch[1] - cover.stretch[0]).fold(0.0, f64::max)
+    }
+
+    /// Change along the face per depth of the side beside its start or end: the body ends there. None of a side that
+    /// goes on along the face.
+    fn slope_of_side(&self, at_end: bool, side: usize) -> Option<f64> {
+        let [own, beside] = [self.face, side].map(|face| self.body().faces[face].tangent);
+        let turn = if at_end { own.cross(beside) } else { beside.cross(own) };
+        let cotangent = -own.dot(beside) / turn;
+        (own.dot(beside) < self.rule.flush && turn > 0.0).then_some(if at_end { -cotangent } else { cotangent })
     }
 
     /// Depths under the face at which third bodies cover the side beside its start or end.
@@ -155,10 +203,9 @@ impl View<'_> {
     /// Whether the viewer leaves a covered face through one beside it: it does not lie on it, but comes in there.
     fn leaves_beside(&self, polygon: &mut Polygon) -> bool {
         let outline = &self.body().outline;
-        let covers = self.covers.of(self.viewed, self.face);
-        !covers.iter().any(|cover| cover.body == self.viewer)
-            && (self.comes_through(outline.next(self.face), false, polygon)
-                || self.comes_through(outline.previous(self.face), true, polygon))
+        self.lies_on(self.face) == 0.0
+            && (self.comes_through(outline.next(self.face), false, self.face, polygon)
+                || self.comes_through(outline.previous(self.face), true, self.face, polygon))
     }
 
     /// What is left of the face beside the covers on it. What lies beyond its ends belongs to the cover there.
@@ -179,8 +226,10 @@ impl View<'_> {
 pub struct OpenBand {
     /// Its bounds.
     pub band: Band,
-    /// Whether the side beside its start and its end is closed.
+    /// Whether the side beside its start and its end is closed, and to corners as well.
     pub closed: [bool; 2],
+    /// The bounds of the cell without a cover.
+    pub bare: [Bound; 2],
     /// Where on the face it begins and ends (m); infinite where only the bounds limit it.
     pub stretch: [f64; 2],
 }
@@ -196,11 +245,14 @@ impl Access {
                 let to = self.levels().filter(|&level| level > from).fold(band.depths[1], f64::min);
                 let closed = [0, 1].map(|end| self.closed[end].iter().any(|[a, b]| *a <= from && to <= *b));
                 let bounds = [0, 1].map(|end| {
-                    let perpendicular = Bound { at: if end == 0 { 0.0 } else { length }, slope: 0.0 };
-                    if closed[end] { perpendicular } else { band.bounds[end] }
+                    let side = Bound { at: if end == 0 { 0.0 } else { length }, slope: self.sides[end] };
+                    if closed[end] { side } else { band.bounds[end] }
                 });
+                let bare = band.bounds;
                 let band = Band { depths: [from, to], bounds };
-                open.iter().for_each(|&stretch| with(OpenBand { band, closed, stretch }));
+                let to_corners = [0, 1].map(|end| closed[end] && !self.lies[end]);
+                let with_stretch = |stretch| OpenBand { band, bare, closed: to_corners, stretch };
+                open.iter().for_each(|&stretch| with(with_stretch(stretch)));
                 from = to;
             }
         }

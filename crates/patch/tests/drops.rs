@@ -58,7 +58,9 @@ fn long_bounces_keep_the_energy() {
                 over += usize::from(found.worst > 1e-4);
             }
         }
-        println!("drops, corner {corner}, hardens {hardens}: {count} bounces, worst {worst:.1e}, {over} falls over 1e-4");
+        println!(
+            "drops, corner {corner}, hardens {hardens}: {count} bounces, worst {worst:.1e}, {over} falls over 1e-4"
+        );
         assert!(over == 0, "{worst:e}");
     }
 }

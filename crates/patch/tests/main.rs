@@ -9,6 +9,7 @@ mod gradient;
 mod heaps;
 mod objectivity;
 mod parts;
+mod probe;
 mod rigid;
 mod slopes;
 mod sums;
