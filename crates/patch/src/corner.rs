@@ -41,7 +41,9 @@ impl View<'_> {
 /// Share with which a point counts in a part of a cell.
 fn share_in(open: &OpenBand, at: Vector, ledge: f64) -> f64 {
     let within = |[low, high]: [f64; 2], value: f64| low <= value && value <= high;
-    if !(within(open.band.depths, at.y) && within(open.stretch, at.x)) {
+    // A cover reaches a ledge farther to corners: that of a third body may lie in the same place.
+    let stretch = [open.stretch[0] + ledge, open.stretch[1] - ledge];
+    if !(within(open.band.depths, at.y) && within(stretch, at.x)) {
         return 0.0;
     }
     let bound = |end: usize| if open.closed[end] { open.band.bounds[end] } else { open.bare[end] };

@@ -61,9 +61,6 @@ fn long_level_tops_let_blocks_pass() {
         for &corner in &corners {
             for count in [1, 2] {
                 let share = over_a_row(count, corner, off);
-                if (share - 1.0).abs() > 5e-4 {
-                    println!("   {corner} {count} {off} {share}");
-                }
                 range = [range[0].min(share), range[1].max(share)];
             }
         }

@@ -53,21 +53,6 @@ fn watch(mut world: World, time: f64) -> Found {
         found.change = found.change.max((energy - start).abs());
         low = low.min(energy);
         found.deepest = found.deepest.max(world.contacts.deepest);
-        if energy - low > 1e3 && world.theta > 0.0 && std::env::var("PROBE").is_ok() {
-            println!("rise {:e}", energy - low);
-            let mut order: Vec<usize> = (0..world.forces.len()).collect();
-            order.sort_by(|&a, &b| world.forces[b][0].total_cmp(&world.forces[a][0]));
-            for &k in order.iter().take(4) {
-                let (row, force) = (world.contacts.rows[k], world.forces[k]);
-                println!("{row:?} {force:?}");
-                println!("viewed {:?}\n viewer {:?}", world.outline(row.key.viewed), world.outline(row.key.viewer));
-                for f in 0..world.outline(row.key.viewed).len() {
-                    println!("  face {f} {:?}", world.contacts.covers.of(row.key.viewed, f));
-                }
-                println!("v {:?} {:?}", world.rigid[row.key.viewed].velocity, world.rigid[row.key.viewer].velocity);
-            }
-            panic!();
-        }
     }
     let is_out = |body: &&super::rigid::Rigid| body.centre.y < -0.01 || body.centre.x.abs() > 3.0;
     found.escaped = world.rigid[3..].iter().filter(is_out).count();
@@ -78,7 +63,7 @@ fn watch(mut world: World, time: f64) -> Found {
 /// nothing passes a depth limit.
 #[test]
 fn long_frictionless_heaps_keep_the_energy() {
-    let (seeds, rows, time, dt) = if is_long() { (1..=6, 8, 2.0, 5e-6) } else { (1..=2, 3, 0.6, 2e-5) };
+    let (seeds, rows, time, dt) = if is_long() { (1..=6, 8, 2.0, 5e-6) } else { (1..=3, 3, 0.6, 5e-6) };
     for corner in [0.0, 0.25] {
         for seed in seeds.clone() {
             let mut world = World::new(1e8, 0.0, dt, 0.0);

@@ -9,7 +9,7 @@ mod gradient;
 mod heaps;
 mod objectivity;
 mod parts;
-mod probe;
+mod rest;
 mod rigid;
 mod slopes;
 mod sums;
