@@ -9,12 +9,17 @@ const DENSITY: f64 = 2650.0;
 const STIFFNESS: f64 = 7.2e9;
 
 /// A world on a plane of 30°, with friction 1 until it is at rest.
-fn plane() -> World {
+fn plane(rule: Rule) -> World {
     let (sine, cosine) = 30f64.to_radians().sin_cos();
     let mut world = World::new(STIFFNESS, 1.0, 1e-4, 4.0);
     world.gravity = Vector::new(9.81 * sine, -9.81 * cosine);
-    world.rule = Rule { reach: 0.05, beside: 0.05, ledge: 5e-4, ..Rule::default() };
+    world.rule = rule;
     world
+}
+
+/// The constants of these slides.
+pub fn usual() -> Rule {
+    Rule { reach: 0.05, beside: 0.05, ledge: 5e-4, ..Rule::default() }
 }
 
 /// Settles, slides for a time with 20° of friction; the way of a body (m), that of a rigid one, and the rise (m).
@@ -30,8 +35,8 @@ fn slide(world: &mut World, body: usize, time: f64) -> [f64; 3] {
 }
 
 /// A row of 22 blocks of 0.25 m with leaning sides, whose tops are off by random heights, under one or two blocks.
-fn over_a_row(count: usize, corner: f64, off: f64) -> f64 {
-    let mut world = plane();
+pub fn over_a_row(count: usize, corner: f64, off: f64, rule: Rule) -> f64 {
+    let mut world = plane(rule);
     let mut random = Random::new(123 + corner as u64);
     let lean = 1.0 / corner.to_radians().tan();
     for k in 0..22 {
@@ -60,7 +65,7 @@ fn long_level_tops_let_blocks_pass() {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for &corner in &corners {
             for count in [1, 2] {
-                let share = over_a_row(count, corner, off);
+                let share = over_a_row(count, corner, off, usual());
                 range = [range[0].min(share), range[1].max(share)];
             }
         }
@@ -70,9 +75,9 @@ fn long_level_tops_let_blocks_pass() {
 }
 
 /// Two blocks of 1 m meet a step up, a step down or an open mouth after 5 cm.
-fn over_a_step(mouth: f64, step: f64, hardens: f64, corner: f64) -> [f64; 3] {
-    let mut world = plane();
-    (world.hardening, world.rule.corner) = (Hardening { depth: hardens }, corner);
+pub fn over_a_step(mouth: f64, step: f64, hardens: f64, rule: Rule) -> [f64; 3] {
+    let mut world = plane(rule);
+    world.hardening = Hardening { depth: hardens };
     world.add(&rectangle([-2.0, -1.5], [2.05, 0.0]), DENSITY, true);
     world.add(&rectangle([2.05 + mouth, -1.5], [6.0, step]), DENSITY, true);
     for k in 0..2 {
@@ -86,7 +91,7 @@ fn over_a_step(mouth: f64, step: f64, hardens: f64, corner: f64) -> [f64; 3] {
 fn steps_hold_and_mouths_do_not() {
     for (corner, hardens) in [(0.25, f64::INFINITY), (0.25, 1.5e-3), (0.0, 1.5e-3)] {
         let way = |mouth: f64, step: f64| {
-            let [way, rigid, _] = over_a_step(mouth, step, hardens, corner);
+            let [way, rigid, _] = over_a_step(mouth, step, hardens, Rule { corner, ..usual() });
             println!("corner {corner}, hardens {hardens}, mouth {mouth}, step {step}: {way:.4} m of {rigid:.4} m");
             way / rigid
         };

@@ -8,7 +8,7 @@ use super::rigid::World;
 const DENSITY: f64 = 2600.0;
 
 /// A box of 6 m with rows of four blocks above it.
-fn heap(seed: u64, rows: usize, mut world: World) -> World {
+pub fn heap(seed: u64, rows: usize, mut world: World) -> World {
     let mut random = Random::new(seed);
     for (low, high) in [([-4.0, -1.0], [4.0, 0.0]), ([-4.0, 0.0], [-3.0, 30.0]), ([3.0, 0.0], [4.0, 30.0])] {
         world.add(&rectangle(low, high), DENSITY, true);
@@ -29,15 +29,17 @@ fn heap(seed: u64, rows: usize, mut world: World) -> World {
     world
 }
 
-struct Found {
-    rise: f64,
+/// Greatest rise of the energy above its least value so far and greatest change, over the energy at the start; the
+/// greatest depth (m), and the number of blocks outside of the box.
+pub struct Found {
+    pub rise: f64,
     change: f64,
     deepest: f64,
-    escaped: usize,
+    pub escaped: usize,
 }
 
-/// Greatest rise of the energy above its least value so far and greatest change, over the energy at the start.
-fn watch(mut world: World, time: f64) -> Found {
+/// Makes steps for a time (s), and watches.
+pub fn watch(mut world: World, time: f64) -> Found {
     let start = world.potential();
     let (mut low, mut found) = (start, Found { rise: 0.0, change: 0.0, deepest: 0.0, escaped: 0 });
     for _ in 0..(time / world.dt) as usize {
@@ -81,13 +83,18 @@ fn long_frictionless_heaps_keep_the_energy() {
     }
 }
 
+/// The constants of heaps with friction.
+pub fn with_friction() -> Rule {
+    Rule { reach: 0.15, beside: 0.15, ledge: 5e-4, ..Rule::default() }
+}
+
 /// With friction and implicit rows: the energy falls, and never rises by more than 1e-4 of the first.
 #[test]
 fn long_heaps_with_friction_gain_nothing() {
     let (seeds, rows, time) = if is_long() { (1..=12, 8, 2.0) } else { (1..=3, 4, 0.8) };
     for seed in seeds {
         let mut world = World::new(7.2e9, 0.36, 1e-4, 4.0);
-        world.rule = Rule { reach: 0.15, beside: 0.15, ledge: 5e-4, ..Rule::default() };
+        world.rule = with_friction();
         world.hardening = Hardening { depth: 0.003 };
         let found = watch(heap(seed, rows, world), time);
         println!("heap {seed}, friction: rise {:.1e}, deepest {:.2} mm", found.rise, found.deepest * 1e3);

@@ -2,6 +2,7 @@
 
 mod cells;
 mod columns;
+mod constants;
 mod cracks;
 mod crossings;
 mod drops;
