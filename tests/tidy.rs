@@ -34,9 +34,9 @@ const FLOORS: [&[&str]; 9] = [
     &["enmm-implicit", "enmm-io", "enmm-observe", "enmm-stability", "enmm-ensemble"],
     &["enmm-picture", "enmm-report"],
     &["enmm-record"],
-    &["enmm-run", "enmm-capi", "enmm-fmi"],
+    &["enmm-run", "enmm-fmi"],
     &["enmm-verification", "enmm-fmu"],
-    &["enmm-cli"],
+    &["enmm-cli", "enmm-capi"],
     &["enmm-fuzz", "enmm-peers", "xtask"],
 ];
 /// Rooms whose results must not depend on the order of a hash.

@@ -26,6 +26,10 @@ fn main() -> std::io::Result<()> {
         }
         _ => return Ok(()),
     };
+    // Threads of rayon sleep for ever in code of this library; dlclose would unmap it under them.
+    if system == "linux" {
+        writeln!(cargo, "cargo:rustc-cdylib-link-arg=-Wl,-z,nodelete")?;
+    }
     writeln!(cargo, "cargo:rustc-cdylib-link-arg={arguments}")?;
     let out = var("OUT_DIR").unwrap_or_default();
     // target/PROFILE/build/PACKAGE/out

@@ -1,9 +1,8 @@
-"""Puts schema and example cases into the wheel, and the library, the program and the library of FMUs; names the
-platform it is for.
+"""Puts schema and example cases into the wheel, and the library and the program; names the platform it is for.
 
 `cargo xtask wheel` sets ENMM_BINARIES to the folder that holds them; cross builds set ENMM_PLATFORM to their platform
-as well, such as win-amd64. The library lies in the package, the program among the scripts, and the library that
-`enmm fmu` packs in `lib`, where the program looks for it. Licences and the list of all parts are in the metadata. The
+as well, such as win-amd64. The library lies in the package, where `enmm fmu` finds it too, and the program among the
+scripts. Licences and the list of all parts are in the metadata. The
 package calls the library by ctypes, so one wheel serves every Python of a platform.
 """
 
@@ -16,9 +15,9 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 NAMES = {
-    "linux": ("libenmm.so", "enmm", "libenmm_fmu.so"),
-    "macosx": ("libenmm.dylib", "enmm", "libenmm_fmu.dylib"),
-    "win": ("enmm.dll", "enmm.exe", "enmm_fmu.dll"),
+    "linux": ("libenmm.so", "enmm"),
+    "macosx": ("libenmm.dylib", "enmm"),
+    "win": ("enmm.dll", "enmm.exe"),
 }
 
 
@@ -38,13 +37,13 @@ class WheelHook(BuildHookInterface):
         if not given:
             return
         platform = os.environ.get("ENMM_PLATFORM") or sysconfig.get_platform()
-        library, program, of_fmus = NAMES[platform.split("-")[0]]
+        library, program = NAMES[platform.split("-")[0]]
         folder = Path(given)
-        missing = [name for name in (library, program, of_fmus, LICENSES, LIST) if not (folder / name).is_file()]
+        missing = [name for name in (library, program, LICENSES, LIST) if not (folder / name).is_file()]
         if missing:
             raise FileNotFoundError(f"{folder} lacks {', '.join(missing)}: run `cargo xtask wheel`")
         build_data["pure_python"] = False
-        binaries = [folder / name for name in (library, program, of_fmus)]
+        binaries = [folder / name for name in (library, program)]
         build_data["tag"] = f"py3-none-{tag(platform, binaries)}"
         build_data["force_include"][str(folder / library)] = f"enmm/{library}"
         build_data["shared_scripts"][str(folder / program)] = program
@@ -53,7 +52,6 @@ class WheelHook(BuildHookInterface):
             str(folder / LICENSES): f"{metadata}/licenses/{LICENSES}",
             str(folder / LIST): f"{metadata}/sboms/{LIST}",
         }
-        build_data["shared_data"][str(folder / of_fmus)] = f"lib/{of_fmus}"
 
 
 def tag(platform: str, binaries: list[Path]) -> str:

@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Version of the standard.
     #[arg(long, value_enum, default_value = "3")]
     fmi: Version,
-    /// Library of another platform to pack as well, such as win64=enmm_fmu.dll; may be repeated. Names are those of
+    /// Library of another platform to pack as well, such as win64=enmm.dll; may be repeated. Names are those of
     /// FMI 2 or FMI 3; a library for this platform replaces the one beside the program.
     #[arg(long, value_name = "PLATFORM=PATH")]
     library: Vec<String>,
@@ -106,7 +106,7 @@ fn other(given: &str, version: table::Version) -> Result<(PathBuf, Library), Fai
     let wrong = |reason: String| Failure::new(format!("--library {given}: {reason}"), BAD_INPUT);
     let (platform, path) = given
         .split_once('=')
-        .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm_fmu.dll".to_owned()))?;
+        .ok_or_else(|| wrong("has no `=`: give PLATFORM=PATH, such as win64=enmm.dll".to_owned()))?;
     let path = PathBuf::from(path);
     let bytes = read_input(&path).map_err(|error| wrong(format!("cannot read the library ({error})")))?;
     let library = Library::of(platform, version, bytes).map_err(|error| wrong(error.to_string()))?;

@@ -10,6 +10,9 @@
 // C sees the names of this crate as they are.
 #![allow(non_camel_case_types)]
 
+// The library of a wheel is that of its FMUs as well: one copy of the engine.
+use enmm_fmu as _;
+
 #[macro_use]
 pub mod growing;
 

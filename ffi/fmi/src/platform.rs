@@ -70,7 +70,7 @@ pub enum NotALibrary {
         wanted: String,
     },
     /// The library lacks the entry points of the version.
-    #[error("has no entry point {entry}: an FMU of FMI {number} needs the library `enmm-fmu` of that platform")]
+    #[error("has no entry point {entry}: an FMU of FMI {number} needs the library `enmm` of that platform")]
     Entry {
         /// Entry point that it must have.
         entry: &'static str,

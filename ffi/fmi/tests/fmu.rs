@@ -351,6 +351,20 @@ fn the_library_is_found_beside_the_program_and_the_newer_one_wins() {
     assert_eq!(&library::find(&program).unwrap(), deps);
 }
 
+#[test]
+fn the_library_of_a_package_of_python_serves_the_program_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("bin/enmm");
+    let name = library::file_name().replace("enmm_fmu", "enmm");
+    for place in ["lib64/python3.9/dist-packages/enmm", "lib/python3.12/site-packages/enmm"] {
+        let place = folder.path().join(place);
+        std::fs::create_dir_all(&place).unwrap();
+        assert!(library::find(&program).is_err() || place.starts_with(folder.path().join("lib")));
+        std::fs::write(place.join(&name), "x").unwrap();
+        assert_eq!(library::find(&program).unwrap(), place.join(&name));
+    }
+}
+
 /// Promise of the descriptions by `dependencies=""`.
 #[test]
 fn outputs_of_the_state_do_not_follow_inputs_before_the_next_step() {

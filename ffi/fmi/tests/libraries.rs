@@ -127,7 +127,7 @@ fn a_library_without_the_entry_points_is_refused() {
         bytes[at..at + 4].copy_from_slice(other.as_bytes());
         let error = Library::of("linux64", version, bytes).unwrap_err();
         assert!(matches!(error, NotALibrary::Entry { .. }));
-        assert!(error.to_string().contains("needs the library `enmm-fmu`"), "{error}");
+        assert!(error.to_string().contains("needs the library `enmm`"), "{error}");
     }
 }
 

@@ -78,7 +78,7 @@ def fmu(
     """Packs a case as a co-simulation FMU that needs no other file; returns its path.
 
     `fmi` is the version of the standard, 2 or 3. `libraries` are those of other platforms to pack as well, such as
-    `{"win64": "enmm_fmu.dll"}`. Raises CaseError.
+    `{"win64": "enmm.dll"}`. Raises CaseError.
     """
     target = path_of("path", path)
     version = whole("fmi", fmi, 2, 3)

@@ -185,7 +185,7 @@ impl<'a> Place<'a> {
         let packed = self.folder.join(format!("coupled_slope_fmi{version}.fmu"));
         let mut pack = self.repository.command(self.repository.enmm());
         pack.args(["fmu", FMU_CASE, "--fmi", version, "--library"]);
-        repository::run(pack.arg(bits::library(self.repository, self.platform, version)).arg("-o").arg(&packed))?;
+        repository::run(pack.arg(bits::library(self.repository, self.platform)).arg("-o").arg(&packed))?;
         let size = packed.metadata().map_err(repository::at(&packed))?.len();
         if size > 2 * FMU_SIZE_MAX {
             return Err(format!("{}: has {size} bytes, must have at most {}", packed.display(), 2 * FMU_SIZE_MAX));

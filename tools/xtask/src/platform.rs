@@ -129,10 +129,9 @@ impl Platform {
         format!("enmm{}", self.program)
     }
 
-    /// File names of all that is shipped: program, C library, library of FMUs.
-    pub fn binaries(&self) -> Vec<String> {
-        let libraries = ["enmm", "enmm_fmu"].map(|name| self.library(name));
-        libraries.into_iter().chain([self.program()]).collect()
+    /// File names of all that is shipped: the library, which FMUs have as well, and the program.
+    pub fn binaries(&self) -> [String; 2] {
+        [self.library("enmm"), self.program()]
     }
 
     /// Whether programs of the platform run on Windows.
@@ -212,8 +211,8 @@ mod tests {
 
     #[test]
     fn files_have_the_names_of_their_platform() {
-        assert_eq!(WINDOWS.binaries(), ["enmm.dll", "enmm_fmu.dll", "enmm.exe"]);
-        assert_eq!(AARCH64.binaries(), ["libenmm.so", "libenmm_fmu.so", "enmm"]);
+        assert_eq!(WINDOWS.binaries(), ["enmm.dll", "enmm.exe"]);
+        assert_eq!(AARCH64.binaries(), ["libenmm.so", "enmm"]);
     }
 
     #[test]

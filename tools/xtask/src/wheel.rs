@@ -1,4 +1,4 @@
-//! One wheel for a platform: package, library, program and the library that `enmm fmu` packs.
+//! One wheel for a platform: package, program and the library, which `enmm fmu` packs as well.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,8 +14,6 @@ use crate::zig;
 const PACKAGE: &str = "ffi/python";
 /// Packages of the binaries.
 const PACKAGES: [&str; 3] = ["enmm-cli", "enmm-capi", "enmm-fmu"];
-/// Arguments of cargo for the library of FMUs.
-const LIBRARY_OF_FMUS: [&str; 5] = ["--package", "enmm-fmu", "--lib", "--crate-type", "cdylib"];
 /// Largest size (bytes). What is larger holds something that does not belong there.
 const SIZE_MAX: u64 = 15_000_000;
 
@@ -33,8 +31,6 @@ pub fn build(repository: &Repository, platform: &Platform) -> Result<PathBuf, St
         cross.missing().map_or(Ok(()), Err)?;
     }
     repository::run(to_ship(repository, platform, "build")?.args(packages()))?;
-    // Once more as a shared library alone: cargo optimizes it as a whole only then.
-    repository::run(to_ship(repository, platform, "rustc")?.args(LIBRARY_OF_FMUS))?;
     let wheel = pack(repository, platform, &platform.built(repository))?;
     let shipped = platform.shipped(repository);
     for name in platform.binaries() {

@@ -91,8 +91,8 @@ pub fn has_folder(platform: &Platform, version: &str) -> bool {
 }
 
 /// The library of a platform as `enmm fmu --library` takes it.
-pub fn library(repository: &Repository, platform: &Platform, version: &str) -> String {
-    let path = platform.shipped(repository).join(platform.library(&format!("enmm_fmi{version}")));
+pub fn library(repository: &Repository, platform: &Platform) -> String {
+    let path = platform.shipped(repository).join(platform.library("enmm"));
     let name = platform.cross.as_ref().map_or("", |cross| cross.fmi);
     format!("{name}={}", path.display())
 }
@@ -202,7 +202,7 @@ impl Maker<'_> {
         let mut steps = venv::command(self.repository, venv::Packages::Usual)?;
         steps.arg("python_tests/fmu_bits.py").arg(&packed).arg(&run);
         if let Some(host) = self.host {
-            pack.args(["--library", &library(self.repository, self.platform, version)]);
+            pack.args(["--library", &library(self.repository, self.platform)]);
             steps.args(host_words(self.platform, self.emulator, version, host));
             self.emulator.prepare(&mut steps);
         }
