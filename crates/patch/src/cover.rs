@@ -1,6 +1,7 @@
 //! Which stretch of a face is no way out.
 //!
-//! Where a third body lies on a face, within a ledge and ten degrees, that stretch is *covered*. A body that has come in
+//! Where a third body lies on a face, within ten degrees and with a gap of a ledge at most, or pressed into it, that
+//! stretch is *covered*. A body that has come in
 //! is not pushed out through a covered stretch, **if it also comes in through the face beside it, near the corner that
 //! both share**: there is the way out, and that face's cell reaches on to the covered side itself instead of to the
 //! bisector. So a block that is pressed over the closed joint of a floor lies on both of its blocks, and neither
@@ -68,8 +69,20 @@ fn covered(face: &crate::Face, other: &crate::Face, rule: &Rule) -> Option<[f64;
     if from >= to {
         return None;
     }
-    let depth = |s: f64| ends[0].y + (ends[1].y - ends[0].y) * (s - ends[0].x) / (ends[1].x - ends[0].x);
-    (depth(from).abs().max(depth(to).abs()) <= rule.ledge).then_some([from, to])
+    let rise = (ends[1].y - ends[0].y) / (ends[1].x - ends[0].x);
+    // Where the other face lies at a depth: before the start and behind the end of a stretch where it never does.
+    let at = |depth: f64| if rise == 0.0 { f64::NAN } else { ends[0].x + (depth - ends[0].y) / rise };
+    let depth = |s: f64| ends[0].y + rise * (s - ends[0].x);
+    let [gap, deep] = [-rule.ledge, rule.reach];
+    if [from, to].map(depth).into_iter().all(|depth| depth < gap || depth > deep) {
+        return None;
+    }
+    let bounded = |s: f64| match depth(s) {
+        depth if depth < gap => at(gap),
+        depth if depth > deep => at(deep),
+        _ => s,
+    };
+    Some([bounded(from), bounded(to)])
 }
 
 /// The face of a body that begins or ends at a point and is level with a normal there; whether it ends.

@@ -3,7 +3,7 @@
 use enmm_patch::{Hardening, Rule, Vector};
 
 use super::parts::{Random, area_and_centre, is_long, rectangle, turned_about};
-use super::rigid::World;
+use super::rigid::{Rigid, World};
 
 const DENSITY: f64 = 2600.0;
 
@@ -43,20 +43,25 @@ pub fn watch(mut world: World, time: f64) -> Found {
     let start = world.potential();
     let (mut low, mut found) = (start, Found { rise: 0.0, change: 0.0, deepest: 0.0, escaped: 0 });
     for _ in 0..(time / world.dt) as usize {
-        let before: Vec<(Vector, f64)> = world.rigid.iter().map(|body| (body.velocity, body.spin)).collect();
-        let potential = world.potential();
-        world.step();
-        let moving = world.rigid.iter().zip(before).filter(|(body, _)| !body.is_held);
-        let kinetic: f64 = moving
-            .map(|(body, (velocity, spin))| body.kinetic((velocity + body.velocity) * 0.5, 0.5 * (spin + body.spin)))
-            .sum();
-        let energy = potential + world.elastic() + kinetic;
+        let energy = if world.theta == 0.0 {
+            let before: Vec<(Vector, f64)> = world.rigid.iter().map(|body| (body.velocity, body.spin)).collect();
+            let potential = world.potential();
+            world.step();
+            let moving = world.rigid.iter().zip(before).filter(|(body, _)| !body.is_held);
+            let mean = |(body, (velocity, spin)): (&Rigid, (Vector, f64))| {
+                body.kinetic((velocity + body.velocity) * 0.5, 0.5 * (spin + body.spin))
+            };
+            potential + world.elastic() + moving.map(mean).sum::<f64>()
+        } else {
+            world.step();
+            world.energy()
+        };
         found.rise = found.rise.max(energy - low);
         found.change = found.change.max((energy - start).abs());
         low = low.min(energy);
         found.deepest = found.deepest.max(world.contacts.deepest);
     }
-    let is_out = |body: &&super::rigid::Rigid| body.centre.y < -0.01 || body.centre.x.abs() > 3.0;
+    let is_out = |body: &&Rigid| body.centre.y < -0.01 || body.centre.x.abs() > 3.0;
     found.escaped = world.rigid[3..].iter().filter(is_out).count();
     Found { rise: found.rise / start, change: found.change / start, ..found }
 }

@@ -149,7 +149,17 @@ impl World {
         self.history.take_over(&self.contacts.rows, &self.seen);
     }
 
-    /// Energy of the springs (J/m).
+    /// Energy of all (J/m) where the bodies are now.
+    pub fn energy(&mut self) -> f64 {
+        let found = std::mem::take(&mut self.contacts);
+        let history = self.history.clone();
+        self.find(0.0);
+        let energy = self.elastic() + self.kinetic() + self.potential();
+        (self.contacts, self.history) = (found, history);
+        energy
+    }
+
+    /// Energy of the springs (J/m) where contacts were found.
     pub fn elastic(&self) -> f64 {
         self.stiffness[0] * self.contacts.energy
     }

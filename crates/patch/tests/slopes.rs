@@ -59,12 +59,12 @@ fn fail(joints: &Joints, time: f64) {
     (world.damping, world.friction) = (0.0, joints.friction.to_radians().tan());
     world.stop();
     let start = world.potential();
-    let (mut low, mut gained) = (start + world.elastic(), 0.0f64);
+    let (mut low, mut gained) = (world.energy(), 0.0f64);
     let (mut deepest, mut fastest, sweeps) = (0.0f64, 0.0f64, world.sweeps);
     let steps = (time / world.dt) as usize;
     for _ in 0..steps {
         world.step();
-        let energy = world.potential() + world.elastic() + world.kinetic();
+        let energy = world.energy();
         (gained, low) = (gained.max(energy - low), low.min(energy));
         deepest = deepest.max(world.contacts.deepest);
         fastest = world.rigid[held..].iter().map(|body| body.velocity.norm()).fold(fastest, f64::max);
