@@ -1,7 +1,6 @@
 //! Which stretch of a face is no way out.
 //!
-//! Where a third body lies on a face, within ten degrees and with a gap of a ledge at most, or pressed into it, that
-//! stretch is *covered*. A body that has come in
+//! Where a third body lies on a face, within a ledge and ten degrees, that stretch is *covered*. A body that has come in
 //! is not pushed out through a covered stretch, **if it also comes in through the face beside it, near the corner that
 //! both share**: there is the way out, and that face's cell reaches on to the covered side itself instead of to the
 //! bisector. So a block that is pressed over the closed joint of a floor lies on both of its blocks, and neither
@@ -9,7 +8,7 @@
 //! in, which stays a way out.
 
 use crate::clip::Polygon;
-use crate::{Band, Body, Bound, Cell, Rule, Vector};
+use crate::{Band, Body, Bound, Cell, Face, Rule, Vector};
 
 /// A stretch of a face on which another body lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,30 +58,15 @@ impl Covers {
     }
 }
 
-/// The stretch of a face on which another one lies.
-fn covered(face: &crate::Face, other: &crate::Face, rule: &Rule) -> Option<[f64; 2]> {
+/// The stretch of a face along which another one lies, nowhere farther from it than a ledge, above it or below.
+fn covered(face: &Face, other: &Face, rule: &Rule) -> Option<[f64; 2]> {
     if face.tangent.dot(other.tangent) > -rule.flush {
         return None;
     }
-    let ends = [other.start + other.tangent * other.length, other.start].map(|end| face.local(end));
-    let [from, to] = [ends[0].x.max(0.0), ends[1].x.min(face.length)];
-    if from >= to {
-        return None;
-    }
-    let rise = (ends[1].y - ends[0].y) / (ends[1].x - ends[0].x);
-    // Where the other face lies at a depth: before the start and behind the end of a stretch where it never does.
-    let at = |depth: f64| if rise == 0.0 { f64::NAN } else { ends[0].x + (depth - ends[0].y) / rise };
-    let depth = |s: f64| ends[0].y + rise * (s - ends[0].x);
-    let [gap, deep] = [-rule.ledge, rule.reach];
-    if [from, to].map(depth).into_iter().all(|depth| depth < gap || depth > deep) {
-        return None;
-    }
-    let bounded = |s: f64| match depth(s) {
-        depth if depth < gap => at(gap),
-        depth if depth > deep => at(deep),
-        _ => s,
-    };
-    Some([bounded(from), bounded(to)])
+    let [low, high] = [other.start + other.tangent * other.length, other.start].map(|end| face.local(end));
+    let ends = [low.x.max(0.0), high.x.min(face.length)];
+    let depth = |s: f64| low.y + (high.y - low.y) * (s - low.x) / (high.x - low.x);
+    (ends[0] < ends[1] && ends.iter().all(|&s| depth(s).abs() <= rule.ledge)).then_some(ends)
 }
 
 /// The face of a body that begins or ends at a point and is level with a normal there; whether it ends.
@@ -188,8 +172,8 @@ impl View<'_> {
 
     /// Length (m) of a face on which the viewer lies itself.
     fn lies_on(&self, face: usize) -> f64 {
-        let is_its = |cover: &&Cover| cover.body == self.viewer;
-        let own = self.covers.of(self.viewed, face).iter().filter(is_its);
+        let covers = self.covers.of(self.viewed, face).iter();
+        let own = covers.filter(|cover| cover.body == self.viewer);
         own.map(|cover| cover.stretch[1] - cover.stretch[0]).fold(0.0, f64::max)
     }
 
