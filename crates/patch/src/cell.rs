@@ -44,7 +44,7 @@ pub struct Band {
     pub bounds: [Bound; 2],
 }
 
-/// What a face owns, by growing depth.
+/// The points that a face owns, by growing depth.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cell {
     /// Bands without a gap between them.

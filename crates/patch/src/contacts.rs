@@ -10,7 +10,7 @@ use crate::{Body, Covers, Hardening, Piece, Rule, Vector};
 /// Which part of the viewer a row belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
-    /// What of it lies in the cell.
+    /// All of it that lies in the cell.
     Patch,
     /// One of its corners.
     Corner(usize),
@@ -153,7 +153,7 @@ fn is_beside(view: &View) -> bool {
 /// How far a cell may reach beyond its face, over its depth: cells of reflex kinks widen, by half the turn.
 const BEYOND: f64 = 10.0;
 
-/// What of the viewer lies in the open part of a cell; hands on the parts of its faces there.
+/// The part of the viewer in the open part of a cell; hands on the parts of its faces there.
 pub(crate) fn patch(
     view: &View,
     access: &Access,

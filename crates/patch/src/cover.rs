@@ -1,11 +1,11 @@
 //! Which stretch of a face is no way out.
 //!
-//! Where a third body lies on a face, within a ledge and ten degrees, that stretch is *covered*. A body that has come in
-//! is not pushed out through a covered stretch, **if it also comes in through the face beside it, near the corner that
-//! both share**: there is the way out, and that face's cell reaches on to the covered side itself instead of to the
-//! bisector. So a block that is pressed over the closed joint of a floor lies on both of its blocks, and neither
-//! pushes it along. The rule is one of geometry: it knows no history and no springs. Only the height of a ledge comes
-//! in, which stays a way out.
+//! Where a third body lies on a face, within a ledge and ten degrees, that stretch is *covered*. A body that has come
+//! in is not pushed out through a covered stretch, **if it also comes in through the face beside it, near the corner
+//! that both share, or through the face of the third body that goes on level there**: there is the way out, and that
+//! face's cell reaches on to the covered side itself instead of to the bisector. So a block that is pressed over the
+//! closed joint of a floor lies on both of its blocks, and neither pushes it along. The rule is one of geometry: it
+//! knows no history and no springs. Only the height of a ledge comes in, which stays a way out.
 
 use crate::clip::Polygon;
 use crate::{Band, Body, Bound, Cell, Face, Rule, Vector};
@@ -205,7 +205,7 @@ impl View<'_> {
                 || self.comes_through(outline.previous(self.face), true, self.face, polygon))
     }
 
-    /// What is left of the face beside the covers on it. What lies beyond its ends belongs to the cover there.
+    /// Leaves of the face the parts beside the covers on it. Beyond its ends all belongs to the cover there.
     fn part(&self, open: &mut Vec<[f64; 2]>) {
         let length = self.body().faces[self.face].length;
         open.push([f64::NEG_INFINITY, f64::INFINITY]);

@@ -1,10 +1,10 @@
-//! What rows of contact keep from step to step, and which row of before a row goes on from.
+//! Memory of rows from step to step, and which row of before a row goes on from.
 
 use std::collections::BTreeMap;
 
 use crate::{Body, Part, Row};
 
-/// What names a row from step to step.
+/// Name of a row from step to step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
     /// The body that is viewed.
@@ -27,7 +27,7 @@ pub struct Kept {
     pub shear: [f64; 2],
 }
 
-/// What all rows keep.
+/// Memory of all rows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
     kept: BTreeMap<Key, Kept>,
@@ -44,7 +44,7 @@ impl History {
         self.kept = next;
     }
 
-    /// What the row of a key goes on from, where it is new: a patch from that on the face before or behind it on the
+    /// Memory that the row of a new key goes on from: a patch from that on the face before or behind it on the
     /// same straight side, a corner from its row on another face or another body.
     fn inherited(&self, key: &Key, bodies: &[Body]) -> Option<&Kept> {
         if let Part::Corner(_) = key.part {
@@ -58,7 +58,7 @@ impl History {
         beside.map(|(face, _)| Key { face, ..*key }).find_map(|old| self.kept.get(&old))
     }
 
-    /// What a row keeps.
+    /// Memory of a row.
     pub fn of(&self, key: &Key) -> Kept {
         self.kept.get(key).copied().unwrap_or_default()
     }

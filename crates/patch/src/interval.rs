@@ -1,4 +1,4 @@
-//! What of one body lies in the cell of a face of another one: force, place, energy, and the closed part of the face
+//! The part of one body in the cell of a face of another one: force, place, energy, and the closed part of the face
 //! with the two rows that carry it.
 //!
 //! The energy of the overlap is the stiffness times the depth, summed over its area. Its gradient is a force along
@@ -19,7 +19,7 @@ const APART: f64 = 0.288_675_134_594_812_87;
 /// Closed length (m) below which a row keeps its force through a step: nothing of a face lies on the other one.
 const LENGTH_LEAST: f64 = 1e-14;
 
-/// What of a body lies in a cell, over the stiffness of the faces and in the axes of the face.
+/// The part of a body that lies in a cell, over the stiffness of the faces and in the axes of the face.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Patch {
     /// Force (m²) along the normal: the area, where faces do not harden.

@@ -10,7 +10,7 @@
 //! ```
 //! use enmm_patch::{Body, Contacts, Hardening, Outline, Rule, Vector};
 //!
-//! // A block of 1 m that lies 1 mm deep in a floor: the energy of the faces is half the area times the square of depth.
+//! // A block of 1 m that lies 1 mm deep in a floor: the energy of faces is half the square of the depth, over 1 m.
 //! let rule = Rule { corner: 0.0, ..Rule::default() };
 //! let block = |[x0, y0]: [f64; 2], [x1, y1]: [f64; 2], is_held| {
 //!     let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| Vector::new(x, y));

@@ -31,7 +31,7 @@ fn slide(gravity: f64, crack: Option<(f64, f64)>, corner: f64) -> [f64; 2] {
     [lowest, world.rigid[block].velocity.x]
 }
 
-/// What presses a corner that lies 20 mm deep in a floor with a closed crack, over the force without one: along the
+/// Force on a corner that lies 20 mm deep in a floor with a closed crack, over the force without one: along the
 /// floor, across it, and the energy.
 fn pressed(dip: f64, way: f64, corner: f64) -> [f64; 3] {
     let half = 2f64.sqrt();

@@ -86,7 +86,7 @@ pub fn over_a_step(mouth: f64, step: f64, hardens: f64, rule: Rule) -> [f64; 3] 
     slide(&mut world, 3, 0.6)
 }
 
-/// What stops a block and what does not, with corner springs and without.
+/// Steps stop blocks and mouths do not, with corner springs and without.
 #[test]
 fn steps_hold_and_mouths_do_not() {
     for (corner, hardens) in [(0.25, f64::INFINITY), (0.25, 1.5e-3), (0.0, 1.5e-3)] {

@@ -84,7 +84,7 @@ fn fail(joints: &Joints, time: f64) {
         world.unsettled,
         (world.sweeps - sweeps) as f64 / steps as f64,
     );
-    assert!(rest < 1e-9 && released > 1e6);
+    assert!(rest < 1e-8 && released > 1e6);
     assert!(gained < 1e-4 * released, "{:e}", gained / released);
     assert!(world.unsettled == 0 && deepest < 0.02);
 }

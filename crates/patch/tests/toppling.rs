@@ -34,7 +34,7 @@ fn columns_topple_where_rigid_ones_do() {
     let [alone, sprung] = [0.0, 0.25].map(|corner| limit(7.2e9, corner, 8));
     let [stiff, both] = [0.0, 0.25].map(|corner| limit(7.2e10, corner, 8));
     println!(
-        "column of 1 x 4 m topples at {alone:.4}, with corner springs {sprung:.4}; ten times as stiff {stiff:.4}, {both:.4}"
+        "column of 1 x 4 m topples at {alone:.4}, with springs {sprung:.4}; ten times as stiff {stiff:.4}, {both:.4}"
     );
     assert!(alone > 0.22 && alone < stiff && stiff < 0.25);
     assert!((sprung - 0.25).abs() < 0.0025 && (both - 0.25).abs() < 0.0025);
