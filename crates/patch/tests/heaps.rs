@@ -71,8 +71,8 @@ pub fn watch(mut world: World, time: f64) -> Found {
 }
 
 /// Explicit and undamped, without friction and covers: the energy stays. With cells down to the middle of each block,
-/// as here, nothing passes a depth limit. The force of a corner jumps where two faces are as near, which steps resolve to
-/// the first order alone: they are a quarter of the others in the long form.
+/// as here, nothing passes a depth limit. The force of a corner jumps where two faces are as near, which steps resolve
+/// to the first order alone: they are a quarter of the others in the long form.
 #[test]
 fn long_frictionless_heaps_keep_the_energy() {
     let (rows, time) = if is_long() { (8, 2.0) } else { (3, 0.6) };

@@ -91,6 +91,7 @@ pub struct World {
     pub contacts: Contacts,
     /// Forces of their rows (N/m).
     pub forces: Vec<[f64; 2]>,
+    spare: Contacts,
     seen: Vec<Body>,
     history: History,
 }
@@ -114,6 +115,7 @@ impl World {
             unsettled: 0,
             contacts: Contacts::default(),
             forces: Vec::new(),
+            spare: Contacts::default(),
             seen: Vec::new(),
             history: History::default(),
         }
@@ -135,8 +137,8 @@ impl World {
         (0..(time / self.dt).round() as usize).for_each(|_| self.step());
     }
 
-    /// Finds the contacts at the places after a time (s) at the present velocities.
-    pub fn find(&mut self, time: f64) {
+    /// Moves what contact sees to the places after a time (s) at the present velocities.
+    fn place(&mut self, time: f64) {
         let Self { rigid, rule, seen, .. } = self;
         if seen.len() != rigid.len() {
             let outline = |body: &Rigid| Outline::new(body.points(0.0).collect());
@@ -145,18 +147,23 @@ impl World {
         for (seen, body) in seen.iter_mut().zip(rigid.iter()) {
             seen.move_rigidly(body.points(time));
         }
+    }
+
+    /// Finds the contacts at the places after a time (s) at the present velocities.
+    pub fn find(&mut self, time: f64) {
+        self.place(time);
         self.contacts.find(&self.seen, &self.rule, self.hardening);
         self.history.take_over(&self.contacts.rows, &self.seen);
     }
 
     /// Energy of all (J/m) where the bodies are now.
     pub fn energy(&mut self) -> f64 {
-        let found = std::mem::take(&mut self.contacts);
-        let history = self.history.clone();
-        self.find(0.0);
-        let energy = self.elastic() + self.kinetic() + self.potential();
-        (self.contacts, self.history) = (found, history);
-        energy
+        self.place(0.0);
+        let mut contacts = std::mem::take(&mut self.spare);
+        contacts.find(&self.seen, &self.rule, self.hardening);
+        let elastic = self.stiffness[0] * contacts.energy;
+        self.spare = contacts;
+        elastic + self.kinetic() + self.potential()
     }
 
     /// Energy of the springs (J/m) where contacts were found.
