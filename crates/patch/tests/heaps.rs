@@ -7,7 +7,7 @@ use super::rigid::{Rigid, World};
 
 const DENSITY: f64 = 2600.0;
 /// A cosine that no two faces have: none covers another.
-const NO_COVERS: f64 = 2.0;
+pub const NO_COVERS: f64 = 2.0;
 /// Heaps of twelve with friction in the long form in which a cover that comes or goes raises the energy.
 const JUMPS: usize = 2;
 
