@@ -10,9 +10,11 @@ mod grounds;
 mod inlets;
 mod looks;
 pub mod mechanism;
+mod monitors;
 mod observe;
 mod openings;
 pub mod overlap;
+mod parted;
 mod rest;
 mod restless;
 mod seepage;
@@ -36,12 +38,16 @@ pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{
     BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,
 };
+pub use parted::Parted;
 pub use restless::Restless;
 pub use seepage::FlowSurvey;
 pub use simulation::Simulation;
 pub use tune::Tunable;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
+pub use crate::monitor::{
+    JOINT_MONITOR_QUANTITIES, JointMonitorState, LinePoint, MONITOR_STRESS_QUANTITIES, Stress, stress,
+};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
     BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, FlowBalance, Inputs, Ledger, Port, PortKind,

@@ -146,6 +146,10 @@ class Totals(NamedTuple):
     """Height of the highest outcrop from which water seeps, of the lowest joint where none does (m)."""
     water_stored: float
     """Water that joints have taken in dynamic stages, m3 per metre (m2)."""
+    flow_parted: float
+    """Length of wet joints that have parted, whose water pushes no more (m)."""
+    flow_parted_pieces: int
+    """Pieces of wet joints that have parted."""
 
 
 class PortState(NamedTuple):
@@ -215,6 +219,39 @@ class MonitorState(NamedTuple):
     """Velocity, x (m/s)."""
     velocity_y: float
     """Velocity, y up (m/s)."""
+
+
+class MonitorStress(NamedTuple):
+    """Stress at a monitor now, of the plane through the stresses of the elements about it."""
+
+    stress_xx: float
+    """Stress xx, tension positive (Pa)."""
+    stress_yy: float
+    """Stress yy, tension positive (Pa)."""
+    stress_xy: float
+    """Stress xy (Pa)."""
+    principal_max: float
+    """Greatest principal stress in the plane (Pa)."""
+    principal_min: float
+    """Least principal stress in the plane: the greatest compression (Pa)."""
+    principal_angle: float
+    """Direction of the greatest compression from the x axis, counter-clockwise (rad)."""
+
+
+class JointMonitorState(NamedTuple):
+    """A monitor of a joint now.
+
+    Slip and shear stress are positive where the far side goes, or is pushed, to the right.
+    """
+
+    opening: float
+    """Opening at the place, apart positive (m)."""
+    slip: float
+    """Slip along the joint, far side to the right positive (m)."""
+    normal_stress: float
+    """Normal stress between the faces, tension positive (Pa)."""
+    shear_stress: float
+    """Shear stress between the faces, as the slip (Pa)."""
 
 
 class InletState(NamedTuple):
