@@ -30,15 +30,7 @@ const RIDDLES_MAX: usize = 60;
 const PRINTERS: [&str; 4] = ["crates/cli/", "tools/", "tests/", "examples/"];
 /// Floors of the house: a crate depends on crates of lower floors alone, tests excepted.
 const FLOORS: [&[&str]; 9] = [
-    &[
-        "enmm-case",
-        "enmm-field",
-        "enmm-handles",
-        "enmm-lanes",
-        "enmm-patch",
-        "enmm-seepage",
-        "enmm-seismology",
-    ],
+    &["enmm-case", "enmm-field", "enmm-handles", "enmm-lanes", "enmm-patch", "enmm-seepage", "enmm-seismology"],
     &["enmm"],
     &["enmm-implicit", "enmm-io", "enmm-observe", "enmm-stability", "enmm-ensemble"],
     &["enmm-picture", "enmm-report"],
