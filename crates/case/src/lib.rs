@@ -67,7 +67,7 @@ pub use pictures::{PictureKind, Pictures};
 pub use ponding::{Pond, PondPart};
 pub use port::Port;
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
-pub use record::BaseMotionKind;
+pub use record::{BaseMotionKind, STANDARD_GRAVITY};
 pub use rock::{Plane, Rock};
 pub use solver::{CornerContacts, Integrator, Newmark, Solver};
 pub use stage::{LawChange, LawSwitch, Stage, StageCut, StageKind};

@@ -84,15 +84,17 @@ keys! {
         /// stage, two to four each time that its number of steps doubles.
         pub frame_interval: Option<f64> => INTERVAL,
         /// Simulated time between rows of the history (s); default: a five-hundredth of the duration of a dynamic
-        /// stage; in a static stage, 32 to 64 each time that its number of steps doubles.
+        /// stage, and at most 0.005 s where a ground motion shakes it; in a static stage, 32 to 64 each time that its
+        /// number of steps doubles.
         pub history_interval: Option<f64> => INTERVAL,
         /// Simulated time between checkpoints (s); default: one at the end.
         pub checkpoint_interval: Option<f64> => INTERVAL,
         /// Whether to write VTU frames.
         pub frames: bool = true,
         /// Which pictures to draw: `true` for the usual ones (`model`, `deformed`, `history`, and at the end of each
-        /// stage `displacement_contours`, `joints`, `mean_stress_contours`, `strength` of rock that can break,
-        /// `flow` of water in joints, and `lines`), `false` for none, or a list of exactly those to draw.
+        /// stage `displacement_contours`, `joints`, `mean_stress_contours`, `strength` of rock that can break, `flow`
+        /// of water in joints, and `lines`; `spectra` of ground motions), `false` for none, or a list of exactly those
+        /// to draw.
         pub pictures: Pictures = Pictures::Usual(true),
         /// Name of a stage: displacements of monitors, lines, frames and pictures, and opening and slip of monitors of
         /// joints, count from its end on; default: from the start.

@@ -41,6 +41,9 @@ words! {
         Flow = "flow",
         /// `stage1_lines.png`: displacement across and along lines at the ends of the stages so far.
         Lines = "lines",
+        /// `record.png` and `spectra.png`, of cases with ground motions: acceleration of the records over time, and
+        /// response spectra of records and monitors.
+        Spectra = "spectra",
     }
 }
 
@@ -56,7 +59,7 @@ pub enum Pictures {
 }
 
 /// Pictures of a run that names none.
-const USUAL: [PictureKind; 9] = [
+const USUAL: [PictureKind; 10] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
@@ -66,6 +69,7 @@ const USUAL: [PictureKind; 9] = [
     PictureKind::Strength,
     PictureKind::Flow,
     PictureKind::Lines,
+    PictureKind::Spectra,
 ];
 
 impl Pictures {

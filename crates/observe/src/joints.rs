@@ -56,6 +56,8 @@ pub struct Joints(Faces);
 pub struct SlipSince {
     /// Number of the joint trace.
     pub trace: usize,
+    /// Index of its law in the case.
+    pub law: u32,
     /// Distance (m) by which one face has moved along the other.
     pub slip: f64,
     /// Middle of the piece now (m).
@@ -139,8 +141,10 @@ impl Joints {
                 moved(edge) * (1.0 - share) + moved(boundary.after(edge)) * share
             });
             let ends = ends(boundary, &positions, piece.edges[0], piece.spans[0]);
-            let trace = boundary.trace[piece.edges[0]]?.index();
-            Some(SlipSince { trace, slip: (own - other).perp(&outward(ends)).abs(), place: (ends[0] + ends[1]) * 0.5 })
+            let trace = boundary.trace[piece.edges[0]]?;
+            let law = state.law_switch[simulation.model().trace_law[trace]].number();
+            let slip = (own - other).perp(&outward(ends)).abs();
+            Some(SlipSince { trace: trace.index(), law, slip, place: (ends[0] + ends[1]) * 0.5 })
         };
         self.0.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)).filter_map(slip).collect()
     }

@@ -20,7 +20,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 38] = [
+const FILES: [&str; 47] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
@@ -28,6 +28,7 @@ const FILES: [&str; 38] = [
     "covers.svg",
     "deformed.png",
     "deformed.svg",
+    "earthquake.csv",
     "energy.png",
     "energy.svg",
     "ensemble.csv",
@@ -49,10 +50,18 @@ const FILES: [&str; 38] = [
     LINES,
     "model.png",
     "model.svg",
+    "record.png",
+    "record.svg",
     "report.html",
     "report_a4.html",
     "report_a4.pdf",
     "run.pvd",
+    "seismic.csv",
+    "seismic.png",
+    "seismic.svg",
+    "spectra.csv",
+    "spectra.png",
+    "spectra.svg",
     "summary.json",
     "sweep.csv",
     "sweep.json",

@@ -6,6 +6,7 @@
 pub mod blocks;
 mod breaks;
 pub mod changes;
+pub mod earthquake;
 pub mod film;
 mod flow;
 mod folder;

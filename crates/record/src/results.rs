@@ -12,12 +12,13 @@ use enmm_observe::{
     Joints, Polygons, Snapshot, WaterInJoints, broken_sections, moved_since, references, rock_sections, water_surface,
 };
 use enmm_picture::{
-    StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture, history_picture,
-    joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations, model_picture,
-    number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
+    Picture, StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture,
+    history_picture, joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations,
+    model_picture, number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
 };
 use enmm_report::FILM;
 
+use crate::earthquake::{self, EarthquakeRecord};
 use crate::flow::FLOW;
 use crate::folder::{FRAMES, make_frames};
 use crate::lines::{LINES, LineRecord, profiles};
@@ -50,6 +51,7 @@ pub fn has_run(directory: &Path) -> bool {
 pub fn clear(directory: &Path) -> io::Result<()> {
     stage_pictures(directory)?.iter().try_for_each(|picture| fs::remove_file(picture).map_err(at_path(picture)))?;
     [FLOW, LINES].iter().try_for_each(|name| remove_table(&directory.join(name)))?;
+    earthquake::clear(directory)?;
     make_frames(directory)?;
     frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
 }
@@ -162,9 +164,12 @@ pub fn draw_checked(simulation: &Simulation, directory: &Path) -> io::Result<()>
     draw_model(simulation, directory)
 }
 
-/// Draws the slope as it is now, and the histories.
-pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
+/// Draws the slope as it is now, the histories and the spectra of earthquakes.
+pub fn draw_end(simulation: &Simulation, earthquakes: &[EarthquakeRecord], directory: &Path) -> io::Result<()> {
     let case = simulation.case();
+    if case.output.pictures.include(PictureKind::Spectra) && !earthquakes.is_empty() {
+        earthquake::draw(directory, &case.title, earthquakes)?;
+    }
     if case.output.pictures.include(PictureKind::Deformed) {
         let snapshot = Snapshot::of(simulation);
         let title = match &case.output.since {
@@ -225,11 +230,7 @@ pub fn draw_stage(
                 let flow = WaterInJoints::of(simulation);
                 flow.map(|flow| flow_picture(&stage, &flow)).into_iter().collect()
             }
-            PictureKind::Lines if simulation.case().lines.is_empty() => Vec::new(),
-            PictureKind::Lines => {
-                let lines = [lines, &LineRecord::all(simulation)].concat();
-                vec![lines_picture(stage.title, &stage.caption, &profiles(&lines))]
-            }
+            PictureKind::Lines => lines_so_far(&stage, lines, &LineRecord::all(simulation)),
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
             PictureKind::Stress => vec![stress_picture(&stage)],
@@ -238,6 +239,7 @@ pub fn draw_stage(
             | PictureKind::Deformed
             | PictureKind::History
             | PictureKind::Energy
+            | PictureKind::Spectra
             | PictureKind::Covers => Vec::new(),
         };
         for (picture, name) in pictures.iter().zip(names) {
@@ -245,6 +247,12 @@ pub fn draw_stage(
         }
     }
     Ok(())
+}
+
+/// The picture of lines at the ends of the stages before and of this one; none of a case without lines.
+fn lines_so_far(stage: &StageEnd, before: &[LineRecord], now: &[LineRecord]) -> Vec<Picture> {
+    let profiles = profiles(&[before, now].concat());
+    if now.is_empty() { Vec::new() } else { vec![lines_picture(stage.title, &stage.caption, &profiles)] }
 }
 
 /// Outer loops and holes of the case.

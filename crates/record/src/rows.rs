@@ -12,6 +12,8 @@ use enmm::model::{
 use enmm_observe::{ENERGIES, MONITOR_QUANTITIES, REPORT_QUANTITIES, bolts};
 use enmm_picture::{Series, StageStart};
 
+use crate::earthquake;
+
 /// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
 /// number of steps doubles.
 const ROWS: [f64; 2] = [500.0, 32.0];
@@ -22,12 +24,15 @@ const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
 
 /// More bolts than this have one column, with the largest tension of all.
 const BOLTS_MAX: usize = 50;
+/// Share of a step by which a time that is one of whole steps may fall short of it, by rounding.
+const WHOLE: f64 = 1e-6;
 /// End of the name of the column of a bolt.
 const TENSION: &str = "_tension";
 /// Quantity of the energies in their picture.
 const ENERGY: &str = "energy";
-/// Quantity of the velocities of monitors in the picture of the histories.
+/// Quantities of monitors in the picture of the histories that dynamic stages alone show.
 const VELOCITY: &str = "velocity";
+const ACCELERATION: &str = "acceleration";
 /// Part of the largest energy below which an energy is left out of the picture.
 const SMALL: f64 = 0.01;
 
@@ -81,7 +86,7 @@ impl Plan {
     pub fn of(simulation: &Simulation) -> Self {
         let output = &simulation.case().output;
         Self {
-            row: Due::of(simulation, output.history_interval, ROWS),
+            row: Due::of(simulation, row_interval(simulation), ROWS),
             frame: Due::of(simulation, output.frame_interval, FRAMES),
             film: film_due(simulation, output.frame_interval),
             checkpoint: output.checkpoint_interval.map(|interval| simulation.steps_in(interval)),
@@ -114,6 +119,19 @@ impl Plan {
     }
 }
 
+/// Time (s) between rows: that of the case, else a short one while a ground motion shakes the slope.
+fn row_interval(simulation: &Simulation) -> Option<f64> {
+    let case = simulation.case();
+    let is_shaken = case.is_shaken(simulation.state().stage as usize);
+    // Whole steps, and not more of them than the time has.
+    let steps = |time: f64| (time / simulation.model().dt + WHOLE).floor().max(1.0);
+    let shortest = || {
+        let interval = (simulation.stage().duration / ROWS[0]).min(earthquake::ROW_INTERVAL);
+        simulation.model().dt * steps(interval)
+    };
+    case.output.history_interval.or_else(|| is_shaken.then(shortest))
+}
+
 /// When frames of the film are due: with those of the results, unless a film would be too coarse or too long by it.
 fn film_due(simulation: &Simulation, frames: Option<f64>) -> Due {
     let [least, most, of_doubling] = FILM_FRAMES;
@@ -139,6 +157,7 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
     columns.extend(REPORT_QUANTITIES.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
     columns.push(("sweeps_mean".to_owned(), ""));
     columns.extend(bolt_columns(case).into_iter().map(|name| (name, "N")));
+    columns.extend(earthquake::columns(case));
     columns
 }
 
@@ -252,18 +271,23 @@ pub fn histories(path: &Path, case: &Case) -> io::Result<Histories> {
         last = number(0);
         let is_static = stages.last().is_none_or(|stage| stage.is_static);
         for (k, series) in &mut series {
-            let hidden = is_static && series.quantity == VELOCITY;
+            let hidden = is_static && moves(series);
             series.points.push((number(0), if hidden { f64::NAN } else { number(*k) }));
         }
     }
     let (energies, mut series): (Vec<_>, Vec<_>) =
         series.into_iter().map(|(_, series)| series).partition(|series| series.quantity == ENERGY);
-    series.retain(|series| series.quantity != VELOCITY || series.points.iter().any(|point| point.1.is_finite()));
+    series.retain(|series| !moves(series) || series.points.iter().any(|point| point.1.is_finite()));
     series.extend(base_motions(case, &stages, last));
     let size = |series: &Series| series.points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     let least = SMALL * energies.iter().map(size).fold(0.0, f64::max);
     let energies = energies.into_iter().filter(|series| size(series) > 0.0 && size(series) >= least).collect();
     Ok(Histories { series, energies, stages })
+}
+
+/// Whether a series has a meaning in dynamic stages alone.
+fn moves(series: &Series) -> bool {
+    [VELOCITY, ACCELERATION].contains(&series.quantity.as_str())
 }
 
 /// The motion of the base from the stage on with which it begins, in dynamic stages.
@@ -309,7 +333,7 @@ fn waves(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
 fn pictured_series(header: &str, energies: &[&str]) -> Option<Series> {
     let (column, unit) = header.strip_suffix(']')?.rsplit_once(" [")?;
     let of = |name: String, quantity: &str| {
-        Some(Series { name, quantity: quantity.to_owned(), unit: unit.to_owned(), points: Vec::new() })
+        Some(Series { name, quantity: quantity.to_owned(), unit: unit.replace("s2", "s²"), points: Vec::new() })
     };
     match column.rsplit_once('_') {
         Some((monitor, "ux")) if unit == "m" => of(format!("{monitor} x"), "displacement"),
@@ -318,6 +342,8 @@ fn pictured_series(header: &str, energies: &[&str]) -> Option<Series> {
         Some((monitor, "vy")) if unit == "m/s" => of(format!("{monitor} y"), VELOCITY),
         Some((gauge, "opening")) if unit == "m" => of(gauge.to_owned(), "opening of joints"),
         Some((gauge, "slip")) if unit == "m" => of(gauge.to_owned(), "slip of joints"),
+        Some((monitor, "ax")) if unit == "m/s2" => of(format!("{monitor} x"), ACCELERATION),
+        Some((monitor, "ay")) if unit == "m/s2" => of(format!("{monitor} y"), ACCELERATION),
         Some((bolt, "tension")) if unit == "N" => of(bolt.replace('_', " "), "tension of a bar"),
         _ if unit == "J/m" && energies.contains(&column) => of(column.replace('_', " "), ENERGY),
         _ => None,

@@ -15,6 +15,7 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
+use crate::earthquake::EarthquakeRecord;
 use crate::flow::FlowRecord;
 use crate::lines::LineRecord;
 use crate::monitors::Measured;
@@ -72,6 +73,9 @@ pub struct Summary {
     /// Monitors at the end, and lines.
     #[serde(flatten)]
     pub measured: Measured,
+    /// Measures of ground motions and of the monitors that they shake.
+    #[serde(skip_serializing_if = "<[EarthquakeRecord]>::is_empty")]
+    pub earthquakes: Vec<EarthquakeRecord>,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -418,6 +422,8 @@ pub(crate) struct RunRecord<'a> {
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
     pub lines: Vec<LineRecord>,
+    /// Measures of ground motions.
+    pub earthquakes: Vec<EarthquakeRecord>,
     pub failed: bool,
     pub verdict: String,
     pub ledger: &'a Ledger,
@@ -429,8 +435,7 @@ pub(crate) struct RunRecord<'a> {
 
 impl Summary {
     pub(crate) fn new(simulation: &Simulation, record: RunRecord) -> Self {
-        let (model, state) = (simulation.model(), simulation.state());
-        let counters = &state.counters;
+        let (model, state, counters) = (simulation.model(), simulation.state(), &simulation.state().counters);
         Self {
             title: simulation.case().title.clone(),
             version: engine_version().to_owned(),
@@ -446,6 +451,7 @@ impl Summary {
             stages: record.stages,
             permanent: record.permanent,
             measured: Measured::of(simulation, record.lines),
+            earthquakes: record.earthquakes,
             time: simulation.time(),
             steps: state.step,
             dt: StepSizes::of(simulation),

@@ -277,7 +277,20 @@ fn quake() -> Value {
         "permanent": [{
             "stage": "quake", "displacement": 0.03829, "block": 3, "place": [50.66, 25.54],
             "joints": [{ "joint": "joint[0]", "slip": 0.03837, "place": [47.88, 22.52] }],
-            "monitors": [{ "name": "crest", "place": [71.0, 49.5], "displacement": [-0.03098, -0.02187] }]
+            "monitors": [{ "name": "crest", "place": [71.0, 49.5], "displacement": [-0.03098, -0.02187] }],
+            "laws": [
+                { "law": "bedding", "slip": 0.03837, "place": [47.88, 22.52] },
+                { "law": "cross", "slip": 0.00412, "place": [63.11, 35.07] }
+            ]
+        }],
+        "earthquakes": [{
+            "stages": ["quake"], "time": [1.2, 13.2], "interval": 0.0051,
+            "motions": [
+                { "name": "quiet[0]", "of": "outcrop", "axis": "x", "pga": 3.3551, "pga_g": 0.34212, "pgv": 0.2013,
+                  "pgd": 0.05541, "arias": 1.2077, "duration": 7.3312 },
+                { "name": "crest", "of": "monitor", "axis": "y", "pga": 5.1277, "pga_g": 0.52288, "pgv": 0.2919,
+                  "pgd": 0.12013, "arias": 2.6044, "duration": 6.9907 }
+            ]
         }],
         "model": { "blocks": 11, "area": 4500.0, "mesh_size": 1.5 },
         "bolts": [], "warnings": [], "notes": [], "input": input()
@@ -296,6 +309,44 @@ fn the_first_page_begins_with_the_verdict_and_has_what_an_earthquake_left() {
         assert!(first.contains(&format!("<data value=\"{number}\">")), "{number}");
     }
     assert!(first.contains("F after the stage</th><td>gravity</td>"), "the record names none: the last static stage");
+}
+
+#[test]
+fn an_earthquake_has_a_chapter_with_its_motions_and_what_slipped() {
+    let html = html(folder_with(&[("summary.json", &quake())]).path());
+    let chapter = html.split("<h2>Earthquake</h2>").nth(1).and_then(|rest| rest.split("</section>").next());
+    let chapter = chapter.expect("a chapter");
+    let places = ["quiet[0], outcrop", "crest", "3.3551", "0.52288", "2.6044", "Joint law", "bedding", "cross"];
+    let at = places.map(|text| chapter.find(text).unwrap_or_else(|| panic!("{text} is not in the chapter")));
+    assert!(at.is_sorted(), "{at:?}");
+    assert!(chapter.contains("<data value=\"0.00412\">4.12</data>"), "slip in millimetres");
+    let mut known = Vec::new();
+    numbers(&quake(), &mut known);
+    for value in chapter.split("<data value=\"").skip(1).map(number) {
+        assert!(known.contains(&value), "{value}");
+    }
+}
+
+#[test]
+fn a_yield_acceleration_stands_beside_newmarks_block_and_the_run() {
+    let mut record = fos();
+    record["seismic"] = json!({
+        "yield_coefficient": 0.1234, "bracket": { "stable": 0.1231, "unstable": 0.1237 }, "bound": 0.1249,
+        "direction": "left", "failing": { "mechanism": "slides" },
+        "newmark": [{ "record": "quiet[0]", "pga_g": 0.342, "displacement": 0.0261, "displacement_reversed": 0.0557 }],
+        "run": { "displacement": 0.0363 }
+    });
+    let html = html(folder_with(&[("fos.json", &record)]).path());
+    let chapter = html.split("<h2>Earthquake</h2>").nth(1).and_then(|rest| rest.split("</section>").next());
+    let chapter = chapter.expect("a chapter");
+    for text in ["0.1234", "0.1249", ">left<", ">slides<", "0.0261", "0.0557", "0.0363"] {
+        assert!(chapter.contains(text), "{text} is not in the chapter");
+    }
+}
+
+#[test]
+fn a_report_of_a_slope_that_nothing_shook_has_no_earthquake() {
+    assert!(!html(folder_with(&[("fos.json", &fos())]).path()).contains("Earthquake"));
 }
 
 #[test]

@@ -23,3 +23,4 @@ mod slips_before_it_holds;
 mod soil_slope;
 mod support;
 mod tutorials;
+mod yield_acceleration;

@@ -1,5 +1,6 @@
 //! The whole report.
 
+use super::earthquake::earthquake_chapter;
 use super::front::{missing, title_page, warnings};
 use super::input::input_chapter;
 use super::parts::{chapter, text};
@@ -15,6 +16,7 @@ pub fn report_html(records: &Records) -> String {
         title_page(records),
         input_chapter(records),
         run_chapter(records),
+        earthquake_chapter(records),
         factor_chapter(records),
         bound_chapter(records),
         probability_chapter(records),

@@ -3,6 +3,7 @@
 //! A report is made from what commands left in a folder (`summary.json`, `fos.json`, `bound.json`, `ensemble.json` and
 //! pictures) and computes nothing: every number of its tables stands in one of these records.
 
+mod earthquake;
 mod front;
 mod html;
 mod input;
