@@ -974,6 +974,14 @@ typedef struct enmm_totals {
    * Water that joints have taken in dynamic stages, m3 per metre (m2).
    */
   double water_stored;
+  /**
+   * Length of wet joints that have parted, whose water pushes no more (m).
+   */
+  double flow_parted;
+  /**
+   * Pieces of wet joints that have parted.
+   */
+  uint64_t flow_parted_pieces;
 } enmm_totals;
 
 /**

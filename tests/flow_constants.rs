@@ -82,3 +82,38 @@ fn half_and_twice_the_share_of_a_dry_pump_tell_the_same() {
         assert_eq!(!model.dry_drains().is_empty(), dry, "{off}: {:?}", model.dry_drains());
     }
 }
+
+/// An outcrop seeps from a billionth of the flow on: below is the round-off of flows, above what a joint brings.
+#[test]
+fn half_and_twice_the_share_of_a_seeping_outcrop_tell_the_same() {
+    for (share, seeps) in [(1e-15, false), (0.4e-9, false), (2.1e-9, true), (1e-6, true)] {
+        // Three times the drop drives the wide joint, and flow goes with the cube of the aperture.
+        let aperture = 1e-4 * f64::cbrt(3.0 * share);
+        let tight = format!(
+            "[[joint]]\npoints = [[0, 20], [100, 20]]\nlaw = \"tight\"\n[joint_law.tight]\nfriction_deg = 40\n\
+             aperture = {aperture:e}\n"
+        );
+        // The isolated joint of the plate lies on another height.
+        let text = plate([25.0, 5.0], 5.0, &tight)
+            .replace("[[40, 20], [45.0, 20]]", "[[40, 25], [45, 25]]")
+            .replace("[mesh]", "joint_law = \"joint\"\n[mesh]");
+        let model = simulation(&text);
+        assert_eq!(model.joint_flow().seepage_height, if seeps { 20.0 } else { 10.0 }, "{share}");
+    }
+}
+
+/// Transmissivities may differ by 1e12: a warning alone hangs on it.
+#[test]
+fn contrasts_are_told_from_1e12_on() {
+    for (contrast, told) in [(1e9, false), (0.45e12, false), (2.2e12, true), (1e15, true)] {
+        let aperture = 1e-2 / f64::cbrt(contrast);
+        let tight = format!(
+            "[[joint]]\npoints = [[0, 15], [100, 15]]\nlaw = \"tight\"\n[joint_law.tight]\nfriction_deg = 40\n\
+             aperture = {aperture:e}\n"
+        );
+        let text = plate([25.0, 20.0], 5.0, &tight)
+            .replace("[flow]\naperture = 1e-4", "[flow]\naperture = 1e-2")
+            .replace("[mesh]", "joint_law = \"joint\"\n[mesh]");
+        assert_eq!(is_told(&simulation(&text), "transmissivities that differ by a factor of"), told, "{contrast}");
+    }
+}

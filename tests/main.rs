@@ -30,6 +30,7 @@ mod flow_constants;
 mod flow_hosts;
 mod flow_in_time;
 mod flow_openings;
+mod flow_parting;
 mod found_contacts;
 mod fracture;
 mod fractured_slope;

@@ -10,16 +10,16 @@ use std::path::Path;
 const ROOMS: [(&str, usize); 13] = [
     ("geometry", 3450),
     ("cover", 1300),
-    ("rock", 1400),
+    ("rock", 1800),
     ("mechanics", 2900),
-    ("contact", 7800),
+    ("contact", 8100),
     ("flow", 700),
     ("state", 2400),
     ("step", 3550),
     ("fracture", 1260),
     ("recut", 1150),
     ("monitor", 500),
-    ("model", 8150),
+    ("model", 8450),
     ("cosimulation", 2_950),
 ];
 const COLUMNS_MAX: usize = 120;

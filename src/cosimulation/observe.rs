@@ -136,7 +136,7 @@ pub struct ContactCounts {
 
 /// Sums and extremes as outputs show them, but for the energies: the structures of C and Python in this order, and the
 /// FMUs. New ones go to the end.
-pub const TOTALS: [Quantity<Totals>; 20] = [
+pub const TOTALS: [Quantity<Totals>; 22] = [
     Quantity::plain("displacement_max", "m", "Largest displacement of a cover", |totals| totals.displacement_max),
     Quantity::plain("velocity_max", "m/s", "Largest velocity of a cover", |totals| totals.velocity_max),
     Quantity::plain("penetration_max", "m", "Largest penetration so far", |totals| totals.penetration_max),
@@ -186,6 +186,15 @@ pub const TOTALS: [Quantity<Totals>; 20] = [
     ),
     Quantity::plain("water_stored", "m2", "Water that joints have taken in dynamic stages, m3 per metre", |totals| {
         totals.flow.stored
+    }),
+    Quantity::plain(
+        "flow_parted",
+        "m",
+        "Length of wet joints that have parted, whose water pushes no more",
+        |totals| totals.flow.parted.length,
+    ),
+    Quantity::count(["flow_parted_pieces"; 2], "Pieces of wet joints that have parted", |totals| {
+        f64::from(totals.flow.parted.pieces)
     }),
 ];
 

@@ -7,6 +7,7 @@ use crate::geometry::Point;
 
 use super::drains::Drain;
 use super::nodes::Nodes;
+use super::parting::Parting;
 
 /// Place outside of the rock at a node of the net.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -86,8 +87,18 @@ pub struct FlowNet {
     pub coupled: bool,
     /// Water (m) that the rock beside joints gives as they drain, for each m² of joint.
     pub storage: f64,
+    /// Motion in dynamic stages beyond which a piece has parted, keeps the greatest aperture and pushes no more; none
+    /// where pieces push wherever their faces go.
+    pub parting: Option<Parting>,
     /// Nodes and pipes, with the order in which systems are solved.
     pub net: Net,
+}
+
+impl FlowPiece {
+    /// Ends (m) of both faces where the ends of its edges are at these places (m).
+    pub fn faces(&self, edges: [[Point; 2]; 2]) -> [[Point; 2]; 2] {
+        [0, 1].map(|k| self.spans[k].map(|share| edges[k][0] + (edges[k][1] - edges[k][0]) * share))
+    }
 }
 
 impl FlowNet {
@@ -139,6 +150,7 @@ impl FlowNet {
             density: 0.0,
             coupled: false,
             storage: 0.0,
+            parting: None,
             net,
         })
     }

@@ -53,7 +53,7 @@ impl<'a> BlockForces<'a> {
             all.at_point(&row.pair.covers[0], &row.pair.weights[0], row.direction * -row.force);
             all.at_point(&row.pair.covers[1], &row.pair.weights[1], row.direction * row.force);
         }
-        step::push_forces(model, state, time, step::ramp(regime, time - state.stage_start), &mut all);
+        step::push_forces(model, state, regime, time, &mut all);
         all.forces
     }
 

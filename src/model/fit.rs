@@ -291,10 +291,13 @@ impl Simulation {
         check_seepage(model, state.seepage.as_ref(), state.stage)?;
         same("law_switch", &state.law_switch, &switch)?;
         for (k, bolt) in state.bolts.iter().enumerate() {
-            let BoltState { active: _, broken: _, rest, natural, force } = *bolt;
+            let BoltState { active: _, broken: _, rest, natural, force, slip: [a, b], slid: [c, d] } = *bolt;
             number(format_args!("bolts[{k}].rest"), rest, LENGTH)?;
             number(format_args!("bolts[{k}].natural"), natural, LENGTH)?;
             number(format_args!("bolts[{k}].force"), force, FORCE)?;
+            for slip in [a, b, c, d] {
+                number(format_args!("bolts[{k}].slip"), slip, LENGTH)?;
+            }
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use enmm_seepage::{Condition, law};
 
-use crate::flow::{FlowPiece, Inlet, Wet, wet};
+use crate::flow::{FlowPiece, Inlet, Wet};
 
 use super::Simulation;
 use super::seepage::Seen;
@@ -80,15 +80,12 @@ impl Simulation {
 impl Simulation {
     /// Sum over all joints (N/m) of the pressure of the water that flows in them; none where none flows.
     pub fn pressure_in_joints(&self) -> Option<f64> {
-        let (model, state) = (&self.built.model, &self.state);
-        let (net, seepage) = (model.flow.as_ref()?, state.seepage.as_ref()?);
-        let pressed = |piece: &FlowPiece| {
-            let unknowns = piece.nodes.map(|node| seepage.unknowns[node as usize]);
-            let part = wet(unknowns, piece.nodes.map(|node| net.places[node as usize].y));
-            part.map_or(0.0, |Wet { span, heads }| (span[1] - span[0]) * piece.length * 0.5 * (heads[0] + heads[1]))
+        let seepage = self.state.seepage.as_ref().filter(|_| self.model().flow.is_some())?;
+        let pressed = |(piece, Wet { span, heads }, _): (&FlowPiece, Wet, bool)| {
+            (span[1] - span[0]) * piece.length * 0.5 * (heads[0] + heads[1])
         };
-        let open = net.pieces.iter().zip(&seepage.conducts).filter(|(_, conducts)| **conducts);
-        Some(open.map(|(piece, _)| pressed(piece)).fold(0.0, |sum, part| sum + part) * seepage.surroundings.weight)
+        let pushing = self.wet_pieces().filter(|(.., has_parted)| !has_parted);
+        Some(pushing.map(pressed).fold(0.0, |sum, part| sum + part) * seepage.surroundings.weight)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Water that flows in joints as hosts see it: at heads, rain and drains, and in the joints of ports.
 
 use crate::contact::EdgeId;
-use crate::flow::{FlowPiece, wet};
+use crate::flow::FlowPiece;
 use crate::state::Quantity;
 use crate::step;
 
 use super::Simulation;
+use super::parted::Parted;
 
 /// Water at a head, in rain or at a drain, as the flow was found last.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -47,6 +48,8 @@ pub struct JointFlow {
     pub residual: f64,
     /// Height of the highest outcrop from which water seeps, that of the lowest joint where none does (m).
     pub seepage_height: f64,
+    /// Wet joints that have parted.
+    pub parted: Parted,
 }
 
 impl Simulation {
@@ -68,22 +71,18 @@ impl Simulation {
             stored: seepage.stored,
             residual: balance.map_or(0.0, |balance| balance.residual),
             seepage_height: balance.and_then(|balance| balance.seeps).unwrap_or_else(lowest),
+            parted: self.parted(),
         }
     }
 
     /// Water that flows in the joints of some edges of the boundary, in their order; by the length of joints before
-    /// they deform.
+    /// they deform. Joints that have parted have no pressure.
     pub fn joint_water(&self, edges: &[EdgeId]) -> JointWater {
-        let (Some(net), Some(seepage)) = (&self.model().flow, &self.state.seepage) else {
-            return JointWater::default();
-        };
+        let Some(net) = &self.model().flow else { return JointWater::default() };
         let is_own = |piece: &FlowPiece| piece.edges.iter().any(|edge| edges.binary_search(edge).is_ok());
-        let (mut length, mut sum, mut most) = (0.0, 0.0, 0.0_f64);
-        for (piece, conducts) in net.pieces.iter().zip(&seepage.conducts).filter(|(piece, _)| is_own(piece)) {
-            length += piece.length;
-            let unknowns = piece.nodes.map(|node| seepage.unknowns[node as usize]);
-            let heights = piece.nodes.map(|node| net.places[node as usize].y);
-            let Some(part) = wet(unknowns, heights).filter(|_| *conducts) else { continue };
+        let length: f64 = net.pieces.iter().filter(|piece| is_own(piece)).map(|piece| piece.length).sum();
+        let (mut sum, mut most) = (0.0, 0.0_f64);
+        for (piece, part, _) in self.wet_pieces().filter(|(piece, _, has_parted)| is_own(piece) && !has_parted) {
             sum += 0.5 * (part.heads[0] + part.heads[1]) * (part.span[1] - part.span[0]).abs() * piece.length;
             most = part.heads.into_iter().fold(most, f64::max);
         }

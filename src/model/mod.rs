@@ -14,6 +14,7 @@ mod monitors;
 mod observe;
 mod openings;
 pub mod overlap;
+mod parted;
 mod rest;
 mod restless;
 mod seepage;
@@ -37,6 +38,7 @@ pub use mechanism::{Mechanism, RigidMotion};
 pub use observe::{
     BLOCK_QUANTITIES, BlockContacts, BlockState, ContactView, MONITOR_QUANTITIES, MonitorState, STRENGTH_QUANTITIES,
 };
+pub use parted::Parted;
 pub use restless::Restless;
 pub use seepage::FlowSurvey;
 pub use simulation::Simulation;

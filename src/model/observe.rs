@@ -379,7 +379,7 @@ impl Simulation {
     /// Forces (N/m) of all other loads on the covers now.
     pub fn load_forces(&self) -> Vec<Vector> {
         let mut forces = vec![Vector::zeros(); self.model().covers.cover_count()];
-        step::push_forces(self.model(), self.state(), self.time(), 1.0, &mut forces[..]);
+        step::push_forces(self.model(), self.state(), step::Regime::AT_REST, self.time(), &mut forces[..]);
         forces
     }
 

@@ -1,7 +1,6 @@
 //! Apertures that follow openings in the course of a static stage: rounds of flow and rest.
 
 use enmm_seepage::Failure;
-use enmm_seepage::law::pressure_head;
 
 use crate::flow::{DEPTH, FlowPiece, accelerate, wet};
 use crate::state::{Round, Rounds, Seepage};
@@ -13,12 +12,9 @@ use super::seepage::Seen;
 
 /// Rounds after which apertures stay as they are.
 pub(super) const ROUNDS_MAX: u32 = 20;
-/// Change of ln e that openings may still ask for in wet joints.
-const ASKED: f64 = 1e-2;
-/// Change of pressure, over the greatest one, that the apertures which openings ask for may still make.
-const PRESSED: f64 = 1e-3;
-/// Share of these two at which rounds end at once; between, they go on as long as each takes half of what is left.
-const FINE: f64 = 0.1;
+/// Change of ln e in wet joints that openings may ask for when rounds end: joints in series change their flow by three
+/// times that, and the pressure between them by one and a half times that of the greatest.
+const ASKED: f64 = 1e-3;
 
 impl Simulation {
     /// Whether apertures of the stage in progress follow openings and have not come to terms with them.
@@ -110,12 +106,8 @@ impl Seen<'_> {
         }
         let before = seepage.balances.last().and_then(|balance| balance.rounds);
         let count = before.map_or(0, |rounds| rounds.count);
-        let apart =
-            if most <= ASKED { apart(&seepage.unknowns, &self.steady(opened.clone(), None)?.unknowns) } else { 1.0 };
-        let agree = most <= ASKED && apart <= PRESSED;
-        let gains = before.is_none_or(|rounds| most <= 0.5 * rounds.asked);
-        let is_fine = most <= FINE * ASKED && apart <= FINE * PRESSED;
-        if agree && (is_fine || !gains) || count == ROUNDS_MAX {
+        let agree = most <= ASKED;
+        if agree || count == ROUNDS_MAX {
             return Ok(Outcome::Over(Rounds { count, asked: most, piece, is_over: true, agree }));
         }
         let kept = seepage.rounds.len().saturating_sub(DEPTH);
@@ -157,11 +149,4 @@ impl Seen<'_> {
 /// Logarithm of an aperture (m); 0 of a closed one.
 fn log(aperture: f64) -> f64 {
     if aperture > 0.0 { libm::log(aperture) } else { 0.0 }
-}
-
-/// Greatest difference of the pressures of two lists of unknowns (m), over the greatest pressure of the first.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let greatest = a.iter().map(|&u| pressure_head(u)).fold(0.0, f64::max);
-    let apart = a.iter().zip(b).map(|(&a, &b)| (pressure_head(a) - pressure_head(b)).abs()).fold(0.0, f64::max);
-    if apart > 0.0 { apart / greatest } else { 0.0 }
 }

@@ -13,6 +13,7 @@ use crate::step::{self, Regime, StepError};
 use super::Simulation;
 use super::bonds::{BondState, bond_states};
 use super::case::{Invalid, Stage, StageKind};
+use super::parted::has_parted;
 
 impl Simulation {
     /// Finds the flow in the joints as they are at the start of a stage, if water flows in them: the steady one, or
@@ -35,7 +36,8 @@ impl Simulation {
     /// Finds the flow again before an internal step where it is due: before the first step of a static stage, whose
     /// inputs a host may have set, and on the grid of a dynamic stage that follows them. The steady one is found if
     /// something around the net has changed; one that goes on in time does so up to the next such step, with what is
-    /// around it now. The apertures are those of the start of the last static stage.
+    /// around it now. The apertures are those of the start of the last static stage, but the greatest one where faces have
+    /// parted.
     ///
     /// # Errors
     /// No flow has been found.
@@ -191,19 +193,37 @@ impl Seen<'_> {
     }
 
     /// Flow that follows one of before: that which has gone on for a span of time (s), or the steady one; none if that
-    /// of before still is. The steady one is looked for from unknowns of before if it `is_near`. What hosts set before
-    /// the first step of all belongs to the flow at its start.
-    fn again(&self, before: &Seepage, is_near: bool, span: Option<f64>) -> Result<Option<Seepage>, Failure> {
+    /// of before still is. In a stage that `follows` flow the steady one is looked for from unknowns of before, and
+    /// pieces that have parted since are as wide as they can be. What hosts set before the first step of all belongs to
+    /// the flow at its start.
+    fn again(&self, before: &Seepage, follows: bool, span: Option<f64>) -> Result<Option<Seepage>, Failure> {
         let is_found = before.balances.last().is_some_and(|balance| balance.stage == self.state.stage);
         let steady = || {
-            let start = is_near.then_some(&before.unknowns[..]);
-            self.steady(before.apertures.clone(), start).map(Some)
+            let start = follows.then_some(&before.unknowns[..]);
+            let apertures = if follows { self.kept(before) } else { before.apertures.clone() };
+            self.steady(apertures, start).map(Some)
         };
-        let is_new = !is_found || !self.are_as(&before.surroundings);
+        let has_widened = || follows && self.newly_parted(before).next().is_some();
+        let is_new = !is_found || !self.are_as(&before.surroundings) || has_widened();
         let is_first = self.state.stage == 0 && self.state.stage_step == 0;
         let Some(span) = span else { return if is_new { steady() } else { Ok(None) } };
         let start = if is_first && is_new { steady()? } else { None };
         self.further(span, start.as_ref().unwrap_or(before)).map(Some)
+    }
+
+    /// Pieces whose faces have parted in a dynamic stage, and which have not the greatest aperture yet.
+    fn newly_parted(&self, before: &Seepage) -> impl Iterator<Item = usize> {
+        let widest = self.net.range[1];
+        let pieces = self.net.pieces.iter().zip(&before.apertures).enumerate();
+        let narrower = pieces.filter(move |(_, (_, own))| own[0] > 0.0 && **own != [widest; 2]);
+        narrower.filter(|(_, (piece, _))| has_parted(self.model, self.state, piece)).map(|(k, _)| k)
+    }
+
+    /// Apertures (m) of before as a dynamic stage keeps them: the greatest one where faces have parted.
+    pub fn kept(&self, before: &Seepage) -> Vec<[f64; 2]> {
+        let mut apertures = before.apertures.clone();
+        self.newly_parted(before).for_each(|k| apertures[k] = [self.net.range[1]; 2]);
+        apertures
     }
 
     /// Unit weight of the water (N/m³).

@@ -145,8 +145,8 @@ impl<'a> Seen<'a> {
     /// Flow that goes on from one of before by an implicit step (s), in a dynamic stage, with levels, heads and rain of
     /// now and the apertures of before.
     pub(super) fn further(&self, step: f64, before: &Seepage) -> Result<Seepage, Failure> {
-        let pieces = self.net.pieces.iter().zip(&before.apertures);
-        let apertures = pieces.map(|(piece, own)| if self.is_there(piece) { *own } else { [0.0; 2] }).collect();
+        let apertures = self.net.pieces.iter().zip(self.kept(before));
+        let apertures = apertures.map(|(piece, own)| if self.is_there(piece) { own } else { [0.0; 2] }).collect();
         let last = before.balances.last().filter(|balance| balance.stage as usize == self.stage);
         let mut course = Course::begin(self, apertures, &before.unknowns, last.and_then(|own| own.water.as_ref()))?;
         let start = course.holds;

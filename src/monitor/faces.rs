@@ -39,7 +39,7 @@ impl Faces {
     }
 
     /// The pieces of an edge.
-    fn on(&self, edge: EdgeId) -> &[u32] {
+    pub fn on(&self, edge: EdgeId) -> &[u32] {
         let [start, end] = [0, 1].map(|next| self.of_edge_start[edge.index() + next] as usize);
         &self.of_edges[start..end]
     }

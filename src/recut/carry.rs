@@ -152,7 +152,7 @@ fn carry_bolts(lineage: &Lineage, (old, was): (&Model, &State), new: &Model, sta
             Some(k) => was.bolts[*k],
             None if is_there(segment.bolt) => {
                 let length = segment.span(&new.covers.star_position, &state.displacement).norm();
-                BoltState { active: true, broken: false, rest: length, natural: length, force: 0.0 }
+                BoltState { active: true, rest: length, natural: length, ..BoltState::default() }
             }
             None => BoltState::default(),
         })

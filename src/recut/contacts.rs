@@ -61,7 +61,7 @@ pub fn carry_contacts(
     if softens {
         state.bonds = seeds.iter().map(|(_, bond)| *bond).collect();
     }
-    let (_, ahead) = step::look_ahead(new, AT_REST, state, true);
+    let (_, ahead) = step::look_ahead(new, Regime::AT_REST, state, true);
     let load = |contact: &VertexEdge| Some((*contact, carry.load(contact, &seeds)?));
     let mut loaded: Vec<(VertexEdge, Loaded)> = ahead.contacts.iter().filter_map(load).collect();
     carry.hand_over(&mut loaded);
@@ -79,9 +79,6 @@ fn key(history: &ContactHistory) -> (NodeId, SideId) {
     (history.node, history.side)
 }
 
-/// The regime in which contacts are looked for: nothing depends on speeds.
-const AT_REST: Regime = Regime::Static { ramp: 0.0 };
-
 /// All contacts before the cut.
 struct Before {
     faces: BTreeMap<Face, Vec<Bearing>>,
@@ -97,7 +94,7 @@ impl Before {
         // Forces that damp a stage find no contacts.
         state.stage_displacement.clear();
         state.stage_force.clear();
-        let (_, ahead) = step::look_ahead(old, AT_REST, &state, true);
+        let (_, ahead) = step::look_ahead(old, Regime::AT_REST, &state, true);
         let springs = ahead.contacts.iter().map(|c| (key(&c.history), (c.gap, c.stiffness)));
         let springs = springs.collect();
         let mut faces: BTreeMap<Face, Vec<Bearing>> = BTreeMap::new();
@@ -147,7 +144,7 @@ impl Carry<'_> {
         let mut unmoved = state.clone();
         unmoved.displacement.fill(Vector::zeros());
         unmoved.velocity.fill(Vector::zeros());
-        let (_, ahead) = step::look_ahead(self.new, AT_REST, &unmoved, true);
+        let (_, ahead) = step::look_ahead(self.new, Regime::AT_REST, &unmoved, true);
         let is_new = |contact: &&VertexEdge| !self.is_known(&contact.history) && self.touches(contact);
         let loaded = ahead.contacts.iter().filter(is_new).filter_map(|contact| self.bears(contact));
         loaded.map(|loaded| (loaded.history, loaded.bond)).collect()

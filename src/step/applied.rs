@@ -7,7 +7,7 @@ use crate::state::{Drive, Model, State};
 
 use super::faces::Faces;
 use super::joint_water::JointWater;
-use super::{Substep, quiet};
+use super::{Regime, Substep, quiet};
 
 /// Acceleration (m/s²) of all rock at time `t` (s), relative to the base: gravity, body loads, what a host moves the
 /// base by (Eq. 31).
@@ -22,7 +22,7 @@ pub(super) fn load(model: &Model, state: &State, step: &Substep, force: &mut Vec
     force.clear();
     if pushes(model, state) {
         force.resize(model.covers.cover_count(), Vector::zeros());
-        push_forces(model, state, step.time, step.ramp(state), &mut force[..]);
+        push_forces(model, state, step.regime, step.time, &mut force[..]);
     }
 }
 
@@ -43,8 +43,10 @@ fn pushes(model: &Model, state: &State) -> bool {
         })
 }
 
-/// Gives what loads and inputs push with at time `t` (s); inputs and water act by their share `ramp`, as gravity does.
-pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut (impl Forces + ?Sized)) {
+/// Gives what loads and inputs push with at time `t` (s); inputs and water act by the ramp of a static stage, as gravity
+/// does.
+pub fn push_forces(model: &Model, state: &State, regime: Regime, t: f64, force: &mut (impl Forces + ?Sized)) {
+    let ramp = super::ramp(regime, t - state.stage_start);
     for load in &model.loads {
         let position = |i: CoverId| model.covers.star_position[i] + state.displacement[i];
         let covers = |b: BlockId| model.covers.covers_of(b);
@@ -62,7 +64,8 @@ pub fn push_forces(model: &Model, state: &State, t: f64, ramp: f64, force: &mut 
     }
     if let (Some(net), Some(seepage)) = (&model.flow, &state.seepage) {
         let reservoir = model.water.as_ref().map(|water| (water, level));
-        JointWater { net, seepage, reservoir, weight }.push(&faces, force);
+        let parting = net.parting.filter(|_| matches!(regime, Regime::Dynamic { .. }));
+        JointWater { net, seepage, reservoir, weight, parting }.push(&faces, force);
     }
     for (k, port) in model.ports.iter().enumerate() {
         let (traction, pressure) = state.drive.port(k, share);

@@ -2,8 +2,8 @@
 //! has been dug out.
 
 use crate::contact::EdgeId;
-use crate::flow::{FlowNet, FlowPiece, Wet, wet};
-use crate::geometry::Vector;
+use crate::flow::{FlowNet, FlowPiece, Parting, Wet, wet};
+use crate::geometry::{Point, Vector};
 use crate::mechanics::{Forces, pressure};
 use crate::state::{Seepage, Water};
 
@@ -17,6 +17,8 @@ pub(super) struct JointWater<'a> {
     pub reservoir: Option<(&'a Water, f64)>,
     /// Unit weight of the water (N/m³), as far as it acts.
     pub weight: f64,
+    /// Motion from which pieces push no more; none in static stages.
+    pub parting: Option<Parting>,
 }
 
 impl JointWater<'_> {
@@ -32,13 +34,17 @@ impl JointWater<'_> {
         }
     }
 
-    /// Pushes both faces of a piece as far as it is wet (Eq. 99).
+    /// Pushes both faces of a piece as far as it is wet (Eq. 99), unless they have parted.
     fn push_piece(&self, faces: &Faces, piece: &FlowPiece, force: &mut (impl Forces + ?Sized)) {
         let unknowns = piece.nodes.map(|node| self.seepage.unknowns[node as usize]);
         let heights = piece.nodes.map(|node| self.net.places[node as usize].y);
         let Some(wet) = wet(unknowns, heights) else { return };
-        for (&edge, span) in piece.edges.iter().zip(&piece.spans) {
-            self.push_part(faces, edge, *span, wet, force);
+        let ends = piece.edges.map(|edge| faces.ends(edge));
+        if self.parting.is_some_and(|parting| parting.has_come(piece.faces(ends))) {
+            return;
+        }
+        for side in [0, 1] {
+            self.push_part(faces, (piece.edges[side], ends[side]), piece.spans[side], wet, force);
         }
     }
 
@@ -49,7 +55,7 @@ impl JointWater<'_> {
             return;
         }
         let (edge, span) = (piece.edges[side], piece.spans[side]);
-        let [a, b] = faces.ends(edge);
+        let ends @ [a, b] = faces.ends(edge);
         let surface = &water.surfaces[faces.state.stage as usize];
         let depth = span.map(|share| surface.depth(level, a + (b - a) * share));
         let crossing = depth[0] / (depth[0] - depth[1]);
@@ -59,14 +65,20 @@ impl JointWater<'_> {
             [true, false] => Wet { span: [0.0, crossing], heads: [depth[0], 0.0] },
             [false, true] => Wet { span: [crossing, 1.0], heads: [0.0, depth[1]] },
         };
-        self.push_part(faces, edge, span, part, force);
+        self.push_part(faces, (edge, ends), span, part, force);
     }
 
-    /// Pushes the wet part of a piece that covers a span of an edge, which may run back.
-    fn push_part(&self, faces: &Faces, edge: EdgeId, span: [f64; 2], wet: Wet, force: &mut (impl Forces + ?Sized)) {
+    /// Pushes the wet part of a piece that covers a span, which may run back, of an edge with these ends (m).
+    fn push_part(
+        &self,
+        faces: &Faces,
+        (edge, [a, b]): (EdgeId, [Point; 2]),
+        span: [f64; 2],
+        wet: Wet,
+        force: &mut (impl Forces + ?Sized),
+    ) {
         let share = wet.span.map(|share| span[0] + (span[1] - span[0]) * share);
         let pressures = wet.heads.map(|head| self.weight * head);
-        let [a, b] = faces.ends(edge);
         let inward = pressure::inward(a, b);
         let forces: [Vector; 2] = if share[0] <= share[1] {
             pressure::part(inward, share, pressures)

@@ -64,6 +64,11 @@ pub enum Regime {
     },
 }
 
+impl Regime {
+    /// A static stage whose gravity acts at once.
+    pub const AT_REST: Self = Self::Static { ramp: 0.0 };
+}
+
 /// Advances one internal step; the report holds what is `wanted` of its start.
 ///
 /// # Errors

@@ -115,7 +115,7 @@ pub fn begin_stage(model: &Model, regime: Regime, state: &mut State, stage: u32,
         state.stage_displacement.clone_from(&state.displacement);
         let acceleration = applied::acceleration(model, state, start);
         let mut force: Vec<Vector> = model.mass_matrix.row_sum.iter().map(|m| acceleration * *m).collect();
-        applied::push_forces(model, state, start, 1.0, &mut force[..]);
+        applied::push_forces(model, state, Regime::AT_REST, start, &mut force[..]);
         state.stage_force = force;
     }
     for block in model.covers.blocks().filter(|&b| state.removed[b]) {

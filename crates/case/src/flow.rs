@@ -47,6 +47,15 @@ const PACE: Rule = Range::above(0.0)
     .usual([1.0, 1e8], "a day in 10 s of motion is 8640")
     .hint("a day in 10 s of motion is 8640; leave it out for flow in the time of the motion");
 
+/// Opening and slip from which pieces of joint have parted, over the mesh size.
+const PART: Rule = Range::from(0.0)
+    .to(1e3)
+    .of(METRE)
+    .usual([1e-3, 1.0], "0.05 times mesh.size is the default")
+    .hint("0 for pieces that never part; leave it out for 0.05 times mesh.size");
+const PARTS_BY_OPENING: f64 = 0.05;
+const PARTS_BY_SLIP: f64 = 0.5;
+
 /// Least and greatest aperture over those of the laws, where a case names none.
 const NARROWEST: f64 = 0.1;
 const WIDEST: f64 = 20.0;
@@ -88,6 +97,13 @@ keys! {
         /// takes 10 s of motion with 8640; default: 1.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub pace: Option<f64> => PACE,
+        /// Opening (m) from which a wet piece of joint has parted in a dynamic stage, as it has by a slip of half of
+        /// `mesh.size`: it keeps the greatest aperture, and its water pushes no more, so that blocks which have left
+        /// their place move by their weight alone. Faces that come back hold water again. 0 for pieces that push
+        /// wherever their blocks go, as in static stages and in the trials of `enmm fos`; default: 0.05 times
+        /// `mesh.size`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub part: Option<f64> => PART,
     }
 }
 
@@ -230,9 +246,19 @@ impl Case {
         self.flow.as_ref().and_then(|flow| flow.pace).unwrap_or(1.0)
     }
 
-    /// Keeps the first stages, and of the pace of flow what has an effect in them.
+    /// Slip and opening (m) from which pieces of joint have parted in dynamic stages; none where they never do.
+    pub fn parting(&self) -> Option<[f64; 2]> {
+        let (size, part) = (self.mesh.size, self.flow.as_ref()?.part);
+        let opening = part.unwrap_or(PARTS_BY_OPENING * size);
+        (opening > 0.0).then_some([PARTS_BY_SLIP * size, opening])
+    }
+
+    /// Keeps the first stages, and of the keys of flow in motion those that have an effect in them.
     pub fn keep_stages(&mut self, count: usize) {
         self.stages.truncate(count);
+        if self.stages.iter().all(|stage| stage.kind == StageKind::Static) {
+            self.flow.iter_mut().for_each(|flow| flow.part = None);
+        }
         if !self.stages.iter().any(Stage::is_transient) {
             self.flow.iter_mut().for_each(|flow| flow.pace = None);
         }

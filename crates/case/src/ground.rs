@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::record::{BaseMotionKind, Baseline, RecordOrigin, RecordReading, WaveMotion};
-use super::{Axes, Case, StageKind, TimeTable};
+use super::{Axes, Case, Fix, StageKind, TimeTable};
 use crate::keys::shared::{FACTOR, PLACE, ROWS};
 use crate::keys::unit::SPEED;
 use crate::keys::{Range, keys, words};
@@ -170,6 +170,18 @@ impl Quiet {
     /// The keys of its record.
     pub fn record_keys(&mut self) -> RecordKeys<'_> {
         record_keys!(self)
+    }
+}
+
+impl Case {
+    /// Lets fixities hold what quiet boundaries and free fields hold in static stages, in their place, for a search that
+    /// knows no waves; ports of quiet boundaries go with them.
+    pub fn hold_quiet_edges(&mut self) {
+        let quiets = self.quiets.drain(..).map(|quiet| (quiet.edge, quiet.axes));
+        let sides = self.free_fields.drain(..).map(|side| (side.edge, side.axes));
+        let held = quiets.chain(sides).map(|(edge, axes)| Fix { edge: Some(edge), axes, ..Fix::default() });
+        self.fixes.extend(held);
+        self.ports.retain(|port| port.quiet.is_none());
     }
 }
 

@@ -6,7 +6,7 @@ use crate::keys::unit::{DEGREE, NUMBER};
 use crate::keys::{Range, Rule, keys, words};
 
 /// Remedy for a dip.
-const DIP: &str = "a dip is measured down from the horizontal; `dips` or `dip_direction_deg` gives the side";
+pub(crate) const DIP: &str = "a dip is measured down from the horizontal; `dips` or `dip_direction_deg` gives the side";
 /// Standard deviations of directions: three of the greatest one are a right angle.
 const SCATTER: Rule = Range::from(0.0)
     .to(30.0)

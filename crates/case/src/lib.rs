@@ -30,11 +30,13 @@ mod port;
 mod random;
 pub mod record;
 mod rock;
+mod skin;
 mod solver;
 mod stage;
 pub mod text;
 mod validate;
 mod water;
+mod weakness;
 
 use std::collections::BTreeMap;
 
@@ -69,9 +71,11 @@ pub use port::Port;
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
 pub use record::{BaseMotionKind, STANDARD_GRAVITY};
 pub use rock::{Plane, Rock};
+pub use skin::Skin;
 pub use solver::{CornerContacts, Integrator, Newmark, Solver};
 pub use stage::{LawChange, LawSwitch, Stage, StageCut, StageKind};
 pub use water::{Water, WaterSurface};
+pub use weakness::PlaneOfWeakness;
 
 /// A closed or open list of points (m).
 pub type PointList = Vec<[f64; 2]>;
@@ -156,6 +160,9 @@ pub struct Case {
     /// Rows of equal rock bolts with their heads on the face.
     #[serde(default, rename = "bolt_pattern", skip_serializing_if = "Vec::is_empty")]
     pub bolt_patterns: Vec<BoltPattern>,
+    /// Shotcrete and mesh along faces.
+    #[serde(default, rename = "skin", skip_serializing_if = "Vec::is_empty")]
+    pub skins: Vec<Skin>,
     /// Velocities at the start.
     #[serde(default, rename = "initial_velocity")]
     pub initial_velocities: Vec<InitialVelocity>,

@@ -92,9 +92,9 @@ keys! {
         /// Whether to write VTU frames.
         pub frames: bool = true,
         /// Which pictures to draw: `true` for the usual ones (`model`, `deformed`, `history`, and at the end of each
-        /// stage `displacement_contours`, `joints`, `mean_stress_contours`, `strength` of rock that can break, `flow`
-        /// of water in joints, and `lines`; `spectra` of ground motions), `false` for none, or a list of exactly those
-        /// to draw.
+        /// stage `displacement_contours`, `joints`, `mean_stress_contours`, `strength` of rock that can break,
+        /// `flow` of water in joints, and `lines`; `spectra` of ground motions), `false` for none, or a list of exactly
+        /// those to draw.
         pub pictures: Pictures = Pictures::Usual(true),
         /// Name of a stage: displacements of monitors, lines, frames and pictures, and opening and slip of monitors of
         /// joints, count from its end on; default: from the start.

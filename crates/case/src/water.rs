@@ -1,9 +1,10 @@
 //! Water of a case.
 
-use crate::PointList;
+use crate::key::{Check, Key};
 use crate::keys::shared::{HEIGHT, PLACE};
 use crate::keys::unit::DENSITY;
 use crate::keys::{Range, Rule, keys};
+use crate::{Case, PointList};
 
 /// Heights of a level surface.
 const LEVEL: Rule = HEIGHT.hint("the height y of the water surface");
@@ -17,6 +18,10 @@ keys! {
         /// Surface as points (m) from left to right, level beyond both ends; hosts shift it by what they move the
         /// level, which starts as the height of its highest point.
         pub table: Option<PointList> => PLACE,
+        /// Height (m) by which all surfaces are higher than they are written or drawn, those of stages too, lower where
+        /// it is negative; a `[[head]]` stays where it is. For `enmm sweep`; default: 0.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub shift: Option<f64> => HEIGHT.hint("0 leaves the surfaces where they are drawn"),
         /// Density (kg/m³).
         pub density: f64 = 1000.0 =>
             Range::above(0.0).to(1e5).of(DENSITY).usual([800.0, 1500.0], "water has 1000 kg/m³").label("Density"),
@@ -37,6 +42,25 @@ keys! {
         pub level: Option<f64> => LEVEL,
         /// Surface as points (m) from left to right, level beyond both ends.
         pub table: Option<PointList> => PLACE,
+    }
+}
+
+impl Case {
+    /// Moves all surfaces of the water to where `shift` has them.
+    ///
+    /// # Errors
+    /// A shift that is out of its range.
+    pub(crate) fn shift_water(&mut self) -> Check {
+        let Some(water) = self.water.as_mut().filter(|water| water.shift.is_some()) else { return Ok(()) };
+        water.check(&Key::root().field("water"))?;
+        let shift = water.shift.take().unwrap_or_default();
+        let own = self.water.iter_mut().map(|water| (&mut water.level, &mut water.table));
+        let of_stages = self.stages.iter_mut().filter_map(|stage| stage.water.as_mut());
+        for (level, table) in own.chain(of_stages.map(|surface| (&mut surface.level, &mut surface.table))) {
+            level.iter_mut().for_each(|level| *level += shift);
+            table.iter_mut().flatten().for_each(|point| point[1] += shift);
+        }
+        Ok(())
     }
 }
 

@@ -144,6 +144,9 @@ fn text(bound: &Bound) -> String {
         "{:<21} {} blocks, {} free; {} interfaces, {} points, {} pairs of facing corners; {} linear programs",
         "model", bound.blocks[0], bound.blocks[1], bound.interfaces, bound.points, bound.corners, bound.programs
     ));
+    if let Some(pressed) = bound.joint_water {
+        lines.push(format!("{:<21} presses with {pressed:.4e} N/m", "water in joints"));
+    }
     let (own, of_build): (Vec<&String>, Vec<&String>) = bound.notes.iter().partition(|note| *note == DUCTILE);
     lines.extend(told::lines(&bound.warnings, of_build.len()));
     lines.extend(own.into_iter().map(|note| format!("note: {note}")));

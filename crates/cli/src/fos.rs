@@ -274,6 +274,11 @@ fn result(reduction: &Reduction, found: &Found, before: Option<&String>) -> Stri
         }
         (None, Err(refused)) => tell("limit analysis", format!("none: {refused}")),
     }
+    if let Some(pressed) = reduction.simulation.pressure_in_joints() {
+        let at_bound = reduction.bound.as_ref().ok().and_then(|bound| bound.joint_water);
+        let beside = at_bound.map_or(String::new(), |bound| format!(", with {bound:.4e} N/m in limit analysis"));
+        tell("water in joints", format!("presses with {pressed:.4e} N/m{beside}"));
+    }
     if let Some(bolts) = bolts(reduction) {
         tell("bolts", bolts);
     }

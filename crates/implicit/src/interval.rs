@@ -236,7 +236,7 @@ impl ImplicitStep<'_> {
             for (force, mass) in force.iter_mut().zip(&*self.model.mass_matrix.row_sum) {
                 *force = pull * *mass;
             }
-            push_forces(self.model, self.state, time, share, &mut force[..]);
+            push_forces(self.model, self.state, self.regime, time, &mut force[..]);
         }
     }
 }

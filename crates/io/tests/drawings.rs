@@ -180,6 +180,10 @@ fn a_drawing_in_millimetres_with_curves_and_blocks_is_a_section() {
     // The block within a block: upright at (1, 2) from its place, and mirrored.
     near(points(7), &[[35.0, 5.5], [35.0, 10.5]]);
     near(case.water.as_ref().unwrap().table.as_ref().unwrap(), &[[10.0, 3.0], [40.0, 9.0]]);
+    let shifted = std::fs::read_to_string(folder.path().join("case.toml")).unwrap() + "\n[water]\nshift = -0.75\n";
+    std::fs::write(folder.path().join("shifted.toml"), shifted).unwrap();
+    let shifted = load_case(&folder.path().join("shifted.toml")).unwrap().case.water.unwrap();
+    near(shifted.table.as_ref().unwrap(), &[[10.0, 2.25], [40.0, 8.25]]);
     let bolts: Vec<_> = case.bolts.iter().map(|bolt| (bolt.name.clone().unwrap(), bolt.points)).collect();
     let expected = [("anchor_1", [[12.0, 8.0], [20.0, 6.0]]), ("anchor_2", [[14.0, 12.0], [22.0, 10.0]])];
     assert_eq!(bolts, expected.map(|(name, points)| (name.to_owned(), points)));

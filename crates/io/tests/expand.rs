@@ -313,3 +313,27 @@ fn a_case_that_is_not_expanded_is_refused() {
     let invalid = Simulation::new(case).map(|_| ()).unwrap_err();
     assert!(invalid.to_string().starts_with("stage: is not expanded; load the case through `enmm_io`"), "{invalid}");
 }
+
+/// A drawn table moves with its shift, and so do level surfaces of stages; a shift of nothing is none.
+#[test]
+fn a_shift_moves_all_surfaces_of_the_water() {
+    let stage = |level: &str| format!("{STAGE}[[stage]]\nname = \"later\"\nkind = \"static\"\nduration = 1.0\n{level}");
+    let water = |keys: &str| format!("[water]\n{keys}\n");
+    for (written, plain) in [
+        ("table = [[0, 4], [20, 6.5]]\nshift = -1.25", "table = [[0, 2.75], [20, 5.25]]"),
+        ("level = 4.0\nshift = 0.5", "level = 4.5"),
+        ("level = 4.0\nshift = 0", "level = 4.0"),
+    ] {
+        assert_same(&text(&water(written), STAGE), &text(&water(plain), STAGE));
+    }
+    let shifted = text(&water("level = 6.0\nshift = 1.0"), &stage("water = { table = [[0, 2], [20, 3]] }\n"));
+    let plain = text(&water("level = 7.0"), &stage("water = { table = [[0, 3], [20, 4]] }\n"));
+    assert_same(&shifted, &plain);
+    let told = error(&text(&water("shift = 1.0"), STAGE));
+    assert!(told.contains("water: has 0 of `level` and `table`"), "{told}");
+    let told = error(&text(&water("level = 4.0\nshift = 1e30"), STAGE));
+    assert!(told.contains("water.shift") && told.contains("1e30"), "{told}");
+    let mut bare = loaded(&text(&water("level = 4.0"), STAGE)).case;
+    bare.water.iter_mut().for_each(|water| water.shift = Some(1.0));
+    assert!(bare.validate().expect_err("it is not expanded").to_string().starts_with("water: is not expanded"));
+}

@@ -85,6 +85,29 @@ impl Joints {
         Self(Faces::of(&simulation.model().boundary, &simulation.built().traces))
     }
 
+    /// Pieces of joint from the point of a node to the next node, of those that are on the first of their two faces.
+    pub fn along(&self, boundary: &Boundary, point: EdgeId) -> Vec<u32> {
+        let end = boundary.nodes.point[boundary.nodes.next[boundary.node_before[point]]];
+        let edges = std::iter::successors(Some(point), |&edge| Some(boundary.after(edge)).filter(|&next| next != end));
+        let Self(faces) = self;
+        let first = |edge: EdgeId| faces.on(edge).iter().filter(move |&&k| faces.pieces[k as usize].edges[0] == edge);
+        edges.flat_map(first).copied().collect()
+    }
+
+    /// Opening and slip (m) of all pieces since the start, in their order; 0 of those of excavated blocks.
+    pub fn moved(&self, simulation: &Simulation) -> Vec<[f64; 2]> {
+        let (boundary, removed) = (&simulation.model().boundary, &simulation.state().removed);
+        let positions = simulation.positions();
+        let moved = |piece: &Facing| {
+            if piece.edges.into_iter().any(|edge| removed[boundary.block[edge]]) {
+                return [0.0; 2];
+            }
+            let JointPiece { opening, slip, .. } = seen(simulation, &positions, piece);
+            [opening, slip]
+        };
+        self.0.pieces.iter().map(moved).collect()
+    }
+
     /// The joints now; those of excavated blocks are left out.
     pub fn now(&self, simulation: &Simulation) -> Vec<JointPiece> {
         let (model, removed) = (simulation.model(), &simulation.state().removed);

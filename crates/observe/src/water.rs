@@ -2,7 +2,7 @@
 
 use enmm::geometry::Point;
 use enmm::model::Simulation;
-use enmm::model::tables::{EdgeId, FlowPiece, Wet, wet};
+use enmm::model::tables::{EdgeId, FlowPiece, Wet};
 
 /// A wet edge of the boundary now.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -23,28 +23,21 @@ pub fn wet_edges(simulation: &Simulation) -> Vec<WetEdge> {
     edges
 }
 
-/// Parts of faces of joints that water which flows presses on.
+/// Parts of faces of joints that water which flows presses on: not of those that have parted.
 fn flow_edges(simulation: &Simulation) -> Vec<WetEdge> {
     let (model, state) = (simulation.model(), simulation.state());
-    let (Some(net), Some(seepage)) = (&model.flow, &state.seepage) else { return Vec::new() };
     let (boundary, weight) = (&model.boundary, water_weight(simulation));
-    let positions = simulation.positions();
+    let positions = if model.flow.is_some() { simulation.positions() } else { Vec::new() };
     let there = |piece: &FlowPiece| piece.edges.iter().all(|&edge| !state.removed[boundary.block[edge]]);
-    let faces = |piece: &FlowPiece| {
-        let unknowns = piece.nodes.map(|node| seepage.unknowns[node as usize]);
-        let heights = piece.nodes.map(|node| net.places[node as usize].y);
-        let part = wet(unknowns, heights);
-        let face = |side: usize, Wet { span, heads }: Wet| {
-            let (edge, [from, to]) = (piece.edges[side], piece.spans[side]);
-            let [a, b] = [edge, boundary.after(edge)].map(|k| positions[k]);
-            let ends = span.map(|share| a + (b - a) * (from + (to - from) * share));
-            let (ends, heads) = if from <= to { (ends, heads) } else { ([ends[1], ends[0]], [heads[1], heads[0]]) };
-            WetEdge { ends, block: model.labels[boundary.block[edge]], pressure: heads.map(|head| weight * head) }
-        };
-        part.map(|part| [0, 1].map(|side| face(side, part))).into_iter().flatten()
+    let face = |piece: &FlowPiece, side: usize, Wet { span, heads }: Wet| {
+        let (edge, [from, to]) = (piece.edges[side], piece.spans[side]);
+        let [a, b] = [edge, boundary.after(edge)].map(|k| positions[k]);
+        let ends = span.map(|share| a + (b - a) * (from + (to - from) * share));
+        let (ends, heads) = if from <= to { (ends, heads) } else { ([ends[1], ends[0]], [heads[1], heads[0]]) };
+        WetEdge { ends, block: model.labels[boundary.block[edge]], pressure: heads.map(|head| weight * head) }
     };
-    let open = net.pieces.iter().zip(&seepage.conducts).filter(|(piece, conducts)| **conducts && there(piece));
-    open.flat_map(|(piece, _)| faces(piece)).collect()
+    let pushing = simulation.wet_pieces().filter(|(piece, _, has_parted)| !has_parted && there(piece));
+    pushing.flat_map(|(piece, part, _)| [0, 1].map(|side| face(piece, side, part))).collect()
 }
 
 /// All edges of the boundary that still water reaches.

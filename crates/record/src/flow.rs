@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use enmm::model::{FlowBalance, Rounds, Simulation, StageWater};
+use enmm::model::{FlowBalance, Parted, Rounds, Simulation, StageWater};
 use enmm_io::files::{at_path, write_atomic};
 
 /// Name of the file.
@@ -54,6 +54,26 @@ pub struct FlowRecord {
     /// Rounds of openings and flow of the stage, if its apertures follow openings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rounds: Option<RoundsRecord>,
+}
+
+/// Wet joints that have parted in a dynamic stage: their water pushes no more.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PartedRecord {
+    /// Their length (m).
+    pub length: f64,
+    /// Their pieces.
+    pub pieces: u32,
+    /// Middle (m) of the piece with the greatest pressure; none where no joint has parted.
+    pub place: Option<[f64; 2]>,
+}
+
+impl PartedRecord {
+    /// Those of a model now; none where water does not flow.
+    pub fn of(simulation: &Simulation) -> Option<Self> {
+        simulation.model().flow.as_ref()?;
+        let Parted { length, pieces, place } = simulation.parted();
+        Some(Self { length, pieces, place: place.map(|place| [place.x, place.y]) })
+    }
 }
 
 /// Rounds of openings and flow.

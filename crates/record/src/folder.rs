@@ -8,6 +8,7 @@ use enmm_io::files::{at_path, is_running, read_result, unfinished_name};
 use same_file::Handle;
 use serde_json::Value;
 
+use crate::along::ALONG;
 use crate::flow::FLOW;
 use crate::lines::LINES;
 
@@ -20,8 +21,9 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 47] = [
+const FILES: [&str; 48] = [
     "blocks.csv",
+    ALONG,
     "bound.json",
     "checkpoint.enmm",
     "covers.png",

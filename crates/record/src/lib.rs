@@ -3,6 +3,7 @@
 //! [`Recorder`] writes them for `enmm run`, [`Recording`] for a model that a host drives.
 #![forbid(unsafe_code)]
 
+pub mod along;
 pub mod blocks;
 mod breaks;
 pub mod changes;

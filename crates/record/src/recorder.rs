@@ -12,6 +12,7 @@ use enmm_io::{LoadedCase, checkpoint};
 use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note};
 
+use crate::along::{ALONG, has_bonds, write_along};
 use crate::blocks::write_blocks;
 use crate::breaks::SectionRecord;
 use crate::earthquake::{self, EarthquakeRecord};
@@ -233,6 +234,14 @@ impl Recorder {
         self.film.frame(simulation)
     }
 
+    /// Appends a frame to the film in any case with its elements, as at the end of a stage.
+    ///
+    /// # Errors
+    /// As [`Recorder::open`].
+    pub fn push_end_of_film(&mut self, simulation: &Simulation) -> io::Result<()> {
+        self.film.frame_at(simulation, simulation.time())
+    }
+
     /// Looks at the model before a step whose report becomes a row.
     pub fn before_row(&mut self, simulation: &Simulation) {
         self.row = Some(self.row_start(simulation));
@@ -319,7 +328,7 @@ impl Recorder {
             simulation.drop_buffers();
         }
         self.push_frame(simulation)?;
-        self.push_film(simulation)?;
+        self.push_end_of_film(simulation)?;
         self.draw_stage(simulation)?;
         self.row_now(simulation, now)
     }
@@ -420,6 +429,9 @@ impl Recorder {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
         write_blocks(&self.directory.join("blocks.csv"), simulation)?;
+        if has_bonds(simulation) {
+            write_along(&self.directory.join(ALONG), simulation)?;
+        }
         let flows = FlowRecord::all(simulation);
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;
@@ -545,6 +557,7 @@ fn film(
         film: directory.join(FILM),
         axis: Axis::time(),
         numbers: numbers(simulation),
+        elements: true,
         columns: &columns,
     };
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;

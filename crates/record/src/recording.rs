@@ -251,7 +251,11 @@ impl Recording {
             self.last.frame = time;
         }
         if (all || self.recorder.plan().film_due(step)) && is_later(simulation, self.last.film) {
-            self.recorder.push_film(simulation)?;
+            if all {
+                self.recorder.push_end_of_film(simulation)?;
+            } else {
+                self.recorder.push_film(simulation)?;
+            }
             self.last.film = time;
         }
         Ok(())

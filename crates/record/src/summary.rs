@@ -16,7 +16,7 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
 use crate::earthquake::EarthquakeRecord;
-use crate::flow::FlowRecord;
+use crate::flow::{FlowRecord, PartedRecord};
 use crate::lines::LineRecord;
 use crate::monitors::Measured;
 use crate::motion::{FailureOfStage, PermanentMotion};
@@ -112,6 +112,9 @@ pub struct Summary {
     /// Water that went through the joints in each stage.
     #[serde(skip_serializing_if = "<[FlowRecord]>::is_empty")]
     pub flow: Vec<FlowRecord>,
+    /// Wet joints that have parted, of a case in which water flows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow_parted: Option<PartedRecord>,
     /// Wall time (s) of the process that writes this.
     pub wall_seconds: WallSeconds,
     /// Threads that the run could use.
@@ -297,6 +300,9 @@ pub struct BoltRecord {
     pub utilisation: Option<f64>,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
+    /// Largest slip of the bar along the rock at both ends of the free length (m); none for a bar without a bond.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<f64>,
     /// Its condition.
     pub state: BoltCondition,
 }
@@ -315,6 +321,7 @@ impl BoltRecord {
                 support: case.support,
                 utilisation: case.yield_force.map(|yields| line.force * case.spacing / yields),
                 plastic_elongation: line.plastic_elongation,
+                slip: case.bond.map(|_| line.slip[0].abs().max(line.slip[1].abs())),
                 state: line.condition,
             }
         };
@@ -480,6 +487,7 @@ impl Summary {
             breaks: BreakRecord::all(simulation),
             worst_sections: SectionRecord::worst(simulation),
             flow: FlowRecord::all(simulation),
+            flow_parted: PartedRecord::of(simulation),
             wall_seconds: record.wall,
             threads: rayon::current_num_threads(),
             trace_ends: TraceEndRecord::all(simulation.built()),

@@ -116,12 +116,13 @@ impl Recorder {
     }
 
     /// Warns of pumps that run dry, of drains that give water, of joints that drain longer than their stage, of
-    /// apertures and openings that disagree, and of flow in joints that is in doubt.
+    /// apertures and openings that disagree, of joints that have parted, and of flow in joints that is in doubt.
     fn warn_of_water(&mut self, simulation: &Simulation) -> io::Result<()> {
         let name = &simulation.stage().name;
         let mut doubts = simulation.dry_drains();
         doubts.extend(simulation.unfinished_drainage());
         doubts.extend(simulation.unsettled_apertures());
+        doubts.extend(simulation.parted_joints());
         if simulation.stage().kind == StageKind::Static {
             doubts.extend(flow_doubts(simulation));
         }

@@ -340,7 +340,7 @@ fn what_cannot_be_shown_is_refused_with_its_place() {
     let text = |error: FilmError| error.to_string();
     let mut moment = slope.at(0.5);
     moment.blocks[2].numbers[4] = f64::NAN;
-    assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("vy of block 2 is NaN at t = 0.5 s"));
+    assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("velocity_y of block 2 is NaN at t = 0.5 s"));
     let mut moment = slope.at(0.5);
     moment.corners[13][0] = f64::INFINITY;
     assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("displacement of corner 13, in block 1 is inf"));

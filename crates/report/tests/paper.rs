@@ -359,3 +359,51 @@ fn a_stage_that_failed_is_named_with_its_mechanism() {
     let html = html(folder_with(&[("summary.json", &run)]).path());
     assert!(html.contains("FAILED by toppling, ended early"));
 }
+
+/// A sweep that `enmm sweep` has made of one key.
+fn swept() -> Value {
+    let sample = |angle: f64, factor: f64, status: &str| {
+        let values = json!({ "joint_law.fault.friction_deg": angle });
+        json!({ "values": values, "level_tops": factor, "status": status })
+    };
+    json!({
+        "title": "Bench slope", "version": "0.1.0", "case_file": "slope.toml", "case_hash": "0123456789abcdef",
+        "settings": [], "kind": "curve", "output": "level_tops", "limit": 1.0,
+        "keys": [{ "key": "joint_law.fault.friction_deg", "values": [20.0, 30.0, 40.0] }],
+        "samples": [sample(20.0, 0.8123, "found"), sample(30.0, 1.2345, "found"), sample(40.0, 1000.0, "at_least")],
+        "crossings": [{ "value": 24.4457, "between": [20.0, 30.0] }],
+        "without_answer": [], "doubtful": [], "input": input()
+    })
+}
+
+#[test]
+fn a_sweep_has_a_chapter_with_its_picture_crossings_and_samples() {
+    let folder = folder_with(&[("fos.json", &fos()), ("sweep/sweep.json", &swept())]);
+    fs::write(folder.path().join("sweep/sweep.svg"), "<svg xmlns=\"x\"/>").expect("written");
+    let shown = html(folder.path());
+    let chapter = shown.split("<h2>Sweep of values</h2>").nth(1).and_then(|rest| rest.split("<h2>").next());
+    let chapter = chapter.expect("a chapter");
+    for number in ["0.8123\">0.812", "1.2345\">1.23", "24.4457\">24.4457", "30\">30"] {
+        assert!(chapter.contains(&format!("<data value=\"{number}</data>")), "{number} in {chapter}");
+    }
+    assert!(chapter.contains("at least") && chapter.contains("<figure>") && chapter.contains("an upper bound"));
+    let first = shown.split("</header>").next().expect("a first page");
+    assert!(first.contains("joint_law.fault.friction_deg = <data value=\"24.4457\">24.4</data>"), "{first}");
+    let mut known = Vec::new();
+    [fos(), swept()].iter().for_each(|record| numbers(record, &mut known));
+    assert!(shown.split("<data value=\"").skip(1).map(number).all(|value| known.contains(&value)));
+}
+
+#[test]
+fn a_sweep_of_changes_one_by_one_has_their_effects() {
+    let mut record = swept();
+    record["kind"] = json!("tornado");
+    record["crossings"] = Value::Null;
+    record["of_the_case"] = json!(1.1111);
+    record["effects"] = json!([{ "key": "angle", "outputs": [[20.0, 0.8123], [30.0, 1.2345]], "range": 0.4222 }]);
+    let shown = html(folder_with(&[("sweep.json", &record)]).path());
+    for part in ["1.1111\">1.11", "0.4222\">0.422", "Each key alone, the greatest effect first"] {
+        assert!(shown.contains(part), "{part}");
+    }
+    assert!(!shown.contains("F passes the limit at") && !shown.contains("Nowhere among these values"));
+}

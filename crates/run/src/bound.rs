@@ -139,6 +139,7 @@ pub fn bound_record(bound: &Bound) -> Value {
         "points": bound.points,
         "corners": bound.corners,
         "programs": bound.programs,
+        "joint_water": bound.joint_water,
         "notes": bound.notes,
         "warnings": bound.warnings,
     });

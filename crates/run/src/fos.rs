@@ -368,6 +368,7 @@ fn search_record(reduction: &Reduction) -> Value {
             (None, Ok(bound)) => bound_record(bound),
             (None, Err(refused)) => json!({ "refused": refused }),
         },
+        "joint_water": reduction.simulation.pressure_in_joints(),
         "remedy": remedy(reduction),
         "bolts": BoltRecord::of(&reduction.simulation),
         "notes": reduction.simulation.built().notes,

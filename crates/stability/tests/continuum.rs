@@ -209,7 +209,6 @@ fn what_rock_that_yields_cannot_bear_is_refused_by_its_key() {
         (slope("[[fix]]\nblock = [25.0, 5.0]\naxes = \"x\"\n"), "fix[2].axes"),
         (griffiths_and_lane("plane = \"stress\"", ""), "rock.soil.plane"),
         (slope("[[port]]\nname = \"face\"\nboundary = [[20, 10], [32, 10]]\npressure = 1e4\n"), "port[0]"),
-        (slope("[[quiet]]\nedge = [[20, 10], [32, 10]]\n"), "quiet[0]"),
     ];
     for (text, key) in refusals {
         assert_refused(bracket(&case(&text), 100), key);

@@ -168,3 +168,19 @@ fn other_water_in_trials_than_in_limit_analysis_is_told() {
     let warning = told(1e10).expect("a warning");
     assert!(warning.contains("aperture_min"), "{warning}");
 }
+
+/// In trials no piece parts, however little `part` lets it open: a slide that has begun is not caught.
+#[test]
+fn no_joint_parts_in_trials() {
+    let shaken = "[[stage]]\nname = \"after\"\nkind = \"dynamic\"\nduration = 1.0\n";
+    let found = |part: &str| {
+        let text = slide(&[1e-4]).replace("[flow]\n", &format!("[flow]\n{part}")) + shaken;
+        let options = ReductionOptions { tolerance: 0.1, ..ReductionOptions::default() };
+        let found = factor_of_safety(&case(&text), &options, &mut |_, _| {}).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(found.simulation.parted().pieces, 0);
+        found.trials.iter().map(|trial| (trial.factor, trial.verdict, trial.displacement)).collect::<Vec<_>>()
+    };
+    let usual = found("");
+    assert!(usual.iter().any(|trial| trial.2 > 1e-4), "{usual:?}");
+    assert_eq!(found("part = 1e-6\n"), usual);
+}

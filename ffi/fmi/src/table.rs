@@ -781,7 +781,15 @@ const FIRST_TOTALS: [&str; 27] = [
 ];
 
 /// Outputs of the whole model that those cases have in which water flows in joints.
-const FLOW_TOTALS: [&str; 5] = ["water_entered", "water_left", "flow_residual", "seepage_height", "water_stored"];
+const FLOW_TOTALS: [&str; 7] = [
+    "water_entered",
+    "water_left",
+    "flow_residual",
+    "seepage_height",
+    "water_stored",
+    "flow_parted",
+    "flow_parted_pieces",
+];
 
 /// Outputs of the whole model by their place.
 struct Rowed {

@@ -42,7 +42,20 @@ from ._batch import Rollout, batch_step, rollout
 from ._case import Case
 from ._data import examples, schema
 from ._document import document
-from ._doors import Imported, Report, Samples, Stereonet, fmu, import_drawing, new, report, sample, stereonet
+from ._doors import (
+    Imported,
+    Report,
+    Samples,
+    Stereonet,
+    Sweep,
+    fmu,
+    import_drawing,
+    new,
+    report,
+    sample,
+    stereonet,
+    sweep,
+)
 from ._errors import (
     BufferTooSmallError,
     BusyError,
@@ -69,7 +82,7 @@ from ._model import BLOCK_DTYPE, CONTACT_DTYPE, Model, State
 from ._parameters import Parameter, Parameters
 from ._ports import Port, Ports
 from ._program import program
-from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, MemoryPart
+from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, MemoryPart, SweepRecord
 from ._results import Fos, Result, RunError
 from ._table import Table
 from ._tasks import bound, check, fos, run
@@ -168,6 +181,8 @@ __all__ = [
     "StepError",
     "StepInfo",
     "Stereonet",
+    "Sweep",
+    "SweepRecord",
     "Table",
     "TimeError",
     "Totals",
@@ -188,4 +203,5 @@ __all__ = [
     "sample",
     "schema",
     "stereonet",
+    "sweep",
 ]

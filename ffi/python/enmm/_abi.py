@@ -328,6 +328,8 @@ class Totals(ctypes.Structure):
         ("flow_residual", c_double),
         ("seepage_height", c_double),
         ("water_stored", c_double),
+        ("flow_parted", c_double),
+        ("flow_parted_pieces", c_uint64),
     ]
 
 

@@ -146,6 +146,10 @@ class Totals(NamedTuple):
     """Height of the highest outcrop from which water seeps, of the lowest joint where none does (m)."""
     water_stored: float
     """Water that joints have taken in dynamic stages, m3 per metre (m2)."""
+    flow_parted: float
+    """Length of wet joints that have parted, whose water pushes no more (m)."""
+    flow_parted_pieces: int
+    """Pieces of wet joints that have parted."""
 
 
 class PortState(NamedTuple):

@@ -3,7 +3,7 @@
 use enmm_seepage::Condition;
 
 use crate::contact::{Boundary, EdgeId, Facings, LawId};
-use crate::flow::{self, FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside, is_open};
+use crate::flow::{self, FlowNet, FlowPiece, HeldHead, Inlet, Outcrop, Outside, Parting, is_open};
 use crate::geometry::{Point, segment};
 use crate::model::case::{self, Case, Flow, Head, Invalid, JointLaw};
 use crate::state::{Model, Water};
@@ -31,6 +31,7 @@ pub(super) fn net(
     }
     net.range = range;
     (net.viscosity, net.storage, net.coupled) = (keys.viscosity, keys.storage, keys.coupled);
+    net.parting = case.parting().map(|[slip, opening]| Parting { slip, opening });
     net.density = water.map_or_else(|| case::Water::default().density, |water| water.density);
     net.apertures = apertures(case);
     let rough = |law: &JointLaw| law.mechanical().map(|mechanical| [mechanical, law.smoothness()]);

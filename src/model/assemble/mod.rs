@@ -214,7 +214,7 @@ fn model(
         element_rock,
         covers,
     };
-    Ok((model, bolt_warnings))
+    bolts::check_step(case, &model).map(|()| (model, bolt_warnings))
 }
 
 /// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.

@@ -6,6 +6,7 @@ use super::input::input_chapter;
 use super::parts::{chapter, text};
 use super::records::Records;
 use super::results::{bound_chapter, factor_chapter, probability_chapter, run_chapter};
+use super::sweep::sweep_chapter;
 use super::table::text_html;
 
 const STYLE: &str = include_str!("style.css");
@@ -20,6 +21,7 @@ pub fn report_html(records: &Records) -> String {
         factor_chapter(records),
         bound_chapter(records),
         probability_chapter(records),
+        sweep_chapter(records),
         warnings(records),
         missing(records),
         case_file(records),
@@ -43,5 +45,5 @@ fn case_file(records: &Records) -> String {
     }
     let name = text(&record.json["case_file"]);
     let content = format!("<p>{}</p>\n<pre>{}</pre>\n", text_html(name), text_html(written));
-    chapter("Case file", &content).replacen("<section>", "<section class=\"page\">", 1)
+    chapter("Case file", &content)
 }

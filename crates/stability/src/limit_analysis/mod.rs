@@ -198,6 +198,9 @@ pub struct Bound {
     pub corners: usize,
     /// Linear programs that were solved.
     pub programs: usize,
+    /// Sum over all joints (N/m) of the pressure of the water that flows in them, with which it was found; none where
+    /// none flows.
+    pub joint_water: Option<f64>,
     /// Whether joints soften, so that [`DUCTILE`] holds.
     pub softens: bool,
     /// Changes that the build has made in the drawing, and how bridges count.
@@ -415,6 +418,7 @@ fn find(case: &Case, beside: bool) -> Result<Bound, BoundError> {
         points,
         corners: corners.len(),
         programs: search.programs + 2 * rounds,
+        joint_water: simulation.pressure_in_joints(),
         softens,
         notes: built.notes.iter().cloned().chain(ductile).collect(),
         warnings,

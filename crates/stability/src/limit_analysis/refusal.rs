@@ -36,19 +36,21 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     let mut warnings = Vec::from_iter(left_out_stages(&case));
     case.keep_stages(count);
     case.refuse_cuts("limit analysis")?;
-    if !case.base_motions.is_empty() {
-        warnings.push("base motion is left out: give a seismic coefficient as a load of kind body".into());
+    if !case.base_motions.is_empty() || case.quiets.iter().any(|quiet| quiet.wave.is_some()) {
+        warnings.push("base motion and waves are left out: give a seismic coefficient as a load of kind body".into());
         case.base_motions.clear();
     }
+    case.hold_quiet_edges();
     refuse_motion(&case)?;
     refuse_curves(&case)?;
+    refuse_bonds(&case)?;
     if case.yields() {
         refuse_points(&case)?;
     }
     // No element takes part, so that none yields, and no doubt about elements that yield has a place.
     for rock in case.rocks.values_mut() {
         (rock.friction_deg, rock.cohesion, rock.hoek_brown) = (None, None, None);
-        (rock.dilation_deg, rock.tension) = (None, None);
+        (rock.dilation_deg, rock.tension, rock.plane_of_weakness) = (None, None, None);
     }
     let mut simulation = Simulation::new(case)?;
     while simulation.next_stage()? {}
@@ -91,25 +93,13 @@ pub fn refuse_flow(case: &Case) -> Result<(), Invalid> {
 }
 
 fn refuse_motion(case: &Case) -> Result<(), Invalid> {
-    let root = Key::root();
-    let lists = [
-        ("quiet", case.quiets.len(), "a quiet boundary answers to motion"),
-        ("free_field", case.free_fields.len(), "a free field answers to motion"),
-    ];
-    if let Some((name, _, why)) = lists.into_iter().find(|(_, count, _)| *count > 0) {
-        let message = format!(
-            "{why}, but limit analysis knows no time: leave it out, hold the boundary by [[fix]], and give a seismic \
-             coefficient as a load of kind \"body\""
-        );
-        return Err(refused(root.field(name).index(0), message));
-    }
     let varies =
         |table: &Option<Vec<[f64; 2]>>| table.as_ref().is_some_and(|rows| rows.iter().any(|row| row[1] != rows[0][1]));
     match case.loads.iter().position(|load| varies(&load.table)) {
         Some(k) => {
             let message = "changes in time, but limit analysis knows no time: leave out the table and give the load \
                            that counts";
-            Err(refused(root.field("load").index(k).field("table"), message))
+            Err(refused(Key::root().field("load").index(k).field("table"), message))
         }
         None => Ok(()),
     }
@@ -128,13 +118,29 @@ fn refuse_curves(case: &Case) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// What acts on a point or on a whole block, in rock that yields: no stress that is finite carries it.
+/// Bars that slip in their grout: their force follows from how far the rock moves.
+fn refuse_bonds(case: &Case) -> Result<(), Invalid> {
+    if let Some(k) = case.bolts.iter().position(|bolt| bolt.bond.is_some()) {
+        let message = "is given, but limit analysis takes bars that are fixed to the rock beside each joint: use \
+                       `enmm fos`, or leave it out and give a `yield_force` that the bond can carry";
+        return Err(refused(Key::root().field("bolt").index(k).field("bond"), message));
+    }
+    Ok(())
+}
+
+/// Rock that yields under plane stress or along planes, and what acts there on a point or on a whole block: no stress
+/// that is finite carries it.
 fn refuse_points(case: &Case) -> Result<(), Invalid> {
     let root = Key::root();
     for (name, rock) in &case.rocks {
         if rock.plane == Plane::Stress {
             let message = "is \"stress\", but limit analysis takes rock that yields in plane strain: use \"strain\"";
             return Err(refused(root.field("rock").field(name).field("plane"), message));
+        }
+        if rock.plane_of_weakness.is_some() {
+            let message = "is given, but limit analysis takes rock that is as strong in all directions: use \
+                           `enmm fos`, or leave it out";
+            return Err(refused(root.field("rock").field(name).field("plane_of_weakness"), message));
         }
     }
     for (k, fix) in case.fixes.iter().enumerate() {

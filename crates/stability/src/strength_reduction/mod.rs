@@ -33,9 +33,11 @@ pub use mechanism::{CHIP, MechanismOptions, mechanisms};
 pub use series::Series;
 pub use setting::Geometry;
 pub use slip::slide;
+pub use trial::Begun;
 
 use series::Trials;
 use setting::Setting;
+use trial::Ended;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
@@ -224,6 +226,8 @@ pub struct Reduction {
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
     pub simulation: Simulation,
+    /// How the motion of that trial began; none at rest.
+    pub begun: Option<Begun>,
 }
 
 impl Reduction {
@@ -338,10 +342,10 @@ fn reduce(
     };
     let (mut series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
     trials.down_to_whole_bars(&mut series, &setting, range);
-    let mechanism = toppling::mechanism(&base, &series);
+    let (mechanism, free_area) = (toppling::mechanism(&base, &series), base.free_area());
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
-    let SecondOpinion { bound, bracket, ends } = opinion;
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
+    let Ended { simulation, begun } = failed.unwrap_or(Ended { simulation: base.simulation, begun: None });
     let mut reduction = Reduction {
         trials: series.trials,
         low: series.low,
@@ -352,12 +356,13 @@ fn reduce(
         before_nudges,
         lost,
         rest: rest.effort,
-        free_area: base.free_area(),
-        bound,
-        bracket,
-        ends,
+        free_area,
+        bound: opinion.bound,
+        bracket: opinion.bracket,
+        ends: opinion.ends,
         warnings: rest.warnings,
-        simulation: failed.unwrap_or(base.simulation),
+        simulation,
+        begun,
     };
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);

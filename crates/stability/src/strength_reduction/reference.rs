@@ -120,12 +120,13 @@ fn trial_case(case: &Case) -> Result<(Case, Vec<String>), Invalid> {
     if !case.base_motions.is_empty() || case.quiets.iter().any(|quiet| quiet.wave.is_some()) {
         warnings.push("base motion and waves are left out: give a seismic coefficient as a load of kind body".into());
         case.base_motions.clear();
-        case.quiets.iter_mut().for_each(|quiet| (quiet.wave, quiet.table, quiet.file) = (None, None, None));
     }
-    case.quiets.iter_mut().for_each(|quiet| quiet.stage = None);
+    case.hold_quiet_edges();
     if case.loads.iter().any(|load| load.table.is_some()) {
         warnings.push("loads with time tables go on changing during the trials".into());
     }
+    // A slide that has begun must not be caught by the water that it leaves behind.
+    case.flow.iter_mut().for_each(|flow| flow.part = Some(0.0));
     // Rock that yields and that no joint cuts has the stiffness of its trials; the ratios between rocks stay.
     let least = case.least_stiffness().filter(|least| case.is_whole() && *least > STIFFEST);
     let share = least.map_or(1.0, |least| STIFFEST / least);
