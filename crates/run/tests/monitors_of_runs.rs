@@ -49,6 +49,9 @@ fn column((head, rows): &(Vec<String>, Vec<Vec<String>>), name: &str) -> Vec<f64
     rows.iter().map(|row| row[k].parse().unwrap_or_else(|_| panic!("{name}: {}", row[k]))).collect()
 }
 
+/// Elastic yield of the block (m): twice ρgh²/E, by which its base and its middle may differ.
+const ELASTIC: f64 = 2.0 * 2650.0 * 9.81 / 10e9;
+
 /// Until the block slides it has settled by micrometres, and then it counts from there: down the plane, which is to the
 /// right of the gauge, as far as the gauge slips; across the plane it keeps the stress of its weight, σn = −W cos β/L
 /// of a block of 1 m.
@@ -63,8 +66,8 @@ fn history_and_lines_count_from_the_end_of_a_stage() {
     assert!(slip[slides - 1].abs() < 1e-4 && slip[slides - 1] != 0.0);
     for k in slides..stage.len() {
         let moved = ux[k].hypot(uy[k]);
-        assert!((slip[k] - moved).abs() <= 1e-3 * moved + 1e-8, "{k}: slip {}, moved {moved}", slip[k]);
-        assert!(opening[k].abs() < 1e-6, "{k}: {}", opening[k]);
+        assert!((slip[k] - moved).abs() <= 1e-3 * moved + ELASTIC, "{k}: slip {}, moved {moved}", slip[k]);
+        assert!(opening[k].abs() < ELASTIC, "{k}: {}", opening[k]);
     }
     assert!(slip.last().is_some_and(|&slip| slip > 3e-3));
     let normal = column(&history, "plane_normal_stress [Pa]")[slides - 1];
@@ -79,7 +82,10 @@ fn history_and_lines_count_from_the_end_of_a_stage() {
         assert!((along[k].hypot(across[k]) - x[k].hypot(y[k])).abs() < 1e-15, "{k}");
     }
     let last = *slip.last().expect("a row");
-    assert!(x[5..].iter().zip(&y[5..]).all(|(x, y)| (x.hypot(*y) - last).abs() < 1e-3 * last), "{x:?} {y:?}, {last}");
+    assert!(
+        x[5..].iter().zip(&y[5..]).all(|(x, y)| (x.hypot(*y) - last).abs() < 1e-3 * last + ELASTIC),
+        "{x:?} {y:?}, {last}"
+    );
     assert_eq!(
         (summary.measured.lines.len(), summary.measured.joint_monitors.len(), summary.measured.monitors.len()),
         (2, 1, 1)
@@ -145,8 +151,7 @@ fn a_checkpoint_goes_on_with_the_stage_from_which_it_counts() {
 fn the_case_of_the_manual_draws_its_lines() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/keys/monitors.toml");
     let loaded = enmm_io::load_case(&path).unwrap_or_else(|error| panic!("{error}"));
-    let folder = std::mem::ManuallyDrop::new(tempdir().expect("a folder"));
-    println!("PICS {}", folder.path().display());
+    let folder = tempdir().expect("a folder");
     let summary = run(&loaded, &options(&folder), &mut ()).expect("a run");
     let text =
         |name: &str| fs::read_to_string(folder.path().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
