@@ -419,7 +419,7 @@ pub(crate) struct RunRecord<'a> {
 impl Summary {
     pub(crate) fn new(simulation: &Simulation, record: RunRecord) -> Self {
         let (model, state) = (simulation.model(), simulation.state());
-        let counters = &state.counters;
+        let (counters, internal) = (&state.counters, model.dt);
         Self {
             title: simulation.case().title.clone(),
             version: engine_version().to_owned(),
@@ -436,12 +436,7 @@ impl Summary {
             permanent: record.permanent,
             time: simulation.time(),
             steps: state.step,
-            dt: StepSizes {
-                min: counters.dt_min,
-                max: counters.dt_max,
-                internal: model.dt,
-                critical: model.critical_dt,
-            },
+            dt: StepSizes { min: counters.dt_min, max: counters.dt_max, internal, critical: model.critical_dt },
             open_close: OpenCloseRecord {
                 mean: counters.sweeps as f64 / counters.substeps.max(1) as f64,
                 max: counters.sweeps_max,
