@@ -8,6 +8,7 @@ mod case;
 mod check;
 mod draw;
 mod edit;
+mod export;
 mod fmu;
 mod fos;
 mod import;
@@ -19,6 +20,7 @@ mod progress;
 mod report;
 mod run;
 mod sample;
+mod sets;
 mod stereonet;
 mod sweep;
 mod told;
@@ -96,8 +98,12 @@ enum Command {
     Bound(bound::Arguments),
     /// Writes a report of results for paper: report_a4.html and, by a browser, report_a4.pdf.
     Report(report::Arguments),
+    /// Writes results as a spreadsheet, a drawing (DXF) or features (GeoJSON).
+    Export(export::Arguments),
     /// Draws the joint sets of a case in space and checks which failures they allow.
     Stereonet(stereonet::Arguments),
+    /// Finds joint sets in a table of dips and dip directions: means, scatter, a net with a rosette, lines for a case.
+    Sets(sets::Arguments),
     /// Shows the model of a case in a browser while the case is written, built again at each save.
     Edit(edit::Arguments),
     /// Shows a run in a browser while it goes on.
@@ -141,7 +147,9 @@ fn execute(command: Command) -> Outcome {
         Command::Draw => draw::draw(),
         Command::Bound(arguments) => bound::bound(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
         Command::Stereonet(arguments) => stereonet::stereonet(&arguments),
+        Command::Sets(arguments) => sets::sets(&arguments),
         Command::Edit(arguments) => edit::edit(arguments),
         Command::View(arguments) => view::view(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use enmm::model::case::EnsembleOutput;
+use enmm_io::files::{remove_if_there, write_atomic};
 use enmm_io::{CaseError, LoadedCase};
 use enmm_run::{
     Change, Crossing, Effect, EnsembleOptions, SampleOutput, SearchOptions, Sweep, SweepKind, SweepResult,
@@ -15,8 +16,10 @@ use enmm_run::{
 use crate::case::CaseArguments;
 use crate::run::{directory_for, print_record, results_folder};
 use crate::workers::{WorkArguments, Workers, warn};
-use crate::{BAD_INPUT, OrFail, Outcome, print_line};
+use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line};
 
+/// Name of the spreadsheet of a sweep.
+const SPREADSHEET: &str = "sweep.xlsx";
 /// Samples of a curve that are printed.
 const PRINTED: usize = 50;
 /// Crossings of a contour that are printed.
@@ -48,6 +51,9 @@ pub struct Arguments {
     output: Option<PathBuf>,
     #[command(flatten)]
     work: WorkArguments,
+    /// Write all tables as the spreadsheet sweep.xlsx beside sweep.csv as well.
+    #[arg(long)]
+    xlsx: bool,
     /// Print one JSON object, that of sweep.json.
     #[arg(long)]
     json: bool,
@@ -87,6 +93,13 @@ fn work_out(arguments: &Arguments) -> Outcome {
     let directory = results_folder(arguments.output.as_ref(), directory_for(&case.path, "sweep"), work.force)?;
     let workers = Workers { case, loaded: &loaded, work, quiet: arguments.json };
     let (found, options) = workers.find(directory, |options, ask, hear| find(&loaded, &sweep, options, ask, hear))?;
+    let path = options.directory.join(SPREADSHEET);
+    // One of an earlier sweep would be taken for that of this one.
+    remove_if_there(&path).or_fail(FAILED)?;
+    if arguments.xlsx {
+        let tables = enmm_export::tables(&options.directory).and_then(|tables| enmm_export::workbook(&tables));
+        write_atomic(&path, &tables.or_fail(FAILED)?).or_fail(FAILED)?;
+    }
     report(arguments, &found, &options)
 }
 

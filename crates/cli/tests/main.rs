@@ -4,6 +4,7 @@ mod bad_input;
 mod bench;
 mod bound;
 mod edit;
+mod export;
 #[path = "../../../tests/common/extent.rs"]
 mod extent;
 mod fmu;
@@ -28,6 +29,7 @@ mod resume;
 mod run;
 mod sample;
 mod set;
+mod sets;
 mod stereonet;
 mod support;
 mod sweep;

@@ -12,6 +12,8 @@ mod colour;
 mod contours;
 mod covers;
 mod displacement;
+#[cfg(feature = "searches")]
+mod field;
 mod flow;
 mod font;
 mod histogram;
@@ -44,6 +46,8 @@ pub use chart::{Chart, ChartSeries, chart_picture};
 pub use contours::{displacement_contours, mean_stress_contours};
 pub use covers::covers_picture;
 pub use displacement::displacement_picture;
+#[cfg(feature = "searches")]
+pub use field::{FieldNet, FieldSet};
 pub use flow::flow_picture;
 pub use histogram::{Fit, histogram_picture};
 pub use history::{Series, history_picture};

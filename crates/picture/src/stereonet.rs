@@ -65,7 +65,7 @@ impl Projection {
         [radius * sin, -radius * cos]
     }
 
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::EqualArea => "equal area (Schmidt), lower hemisphere",
             Self::EqualAngle => "equal angle (Wulff), lower hemisphere",

@@ -19,7 +19,7 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 36] = [
+const FILES: [&str; 37] = [
     "blocks.csv",
     "bound.json",
     "checkpoint.enmm",
@@ -56,6 +56,7 @@ const FILES: [&str; 36] = [
     "sweep.json",
     "sweep.png",
     "sweep.svg",
+    "sweep.xlsx",
 ];
 
 /// A folder of results that no other process writes to until this is dropped.

@@ -12,6 +12,7 @@ mod meshes;
 mod model_page;
 pub mod rock_mass;
 mod run;
+mod sets;
 mod stereonet;
 mod sweep;
 
@@ -32,5 +33,6 @@ pub use mechanism_page::{write_bound_page, write_bracket_page};
 pub use meshes::{Meshes, OnMesh};
 pub use model_page::write_model_page;
 pub use run::{Observer, RunError, RunOptions, RunProgress, run};
+pub use sets::{FoundSet, FoundSets, SetOptions, sets};
 pub use stereonet::{NetOptions, apparent, stereonet};
 pub use sweep::{Change, Crossing, Effect, Sweep, SweepKind, SweepResult, sweep};

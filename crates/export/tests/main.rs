@@ -1,0 +1,4 @@
+//! Tests of the exports.
+
+mod slopes;
+mod spreadsheets;
