@@ -18,7 +18,7 @@ const ROOMS: [(&str, usize); 12] = [
     ("step", 3550),
     ("fracture", 1260),
     ("recut", 1150),
-    ("model", 8000),
+    ("model", 8100),
     ("cosimulation", 2_900),
 ];
 const COLUMNS_MAX: usize = 120;
