@@ -41,8 +41,8 @@ fn number_after(page: &str, text: &str) -> f64 {
     digits.trim_end_matches('.').parse().unwrap_or_else(|error| panic!("{text:?}: {error}"))
 }
 
-/// Limit analysis is exact where the wedge slides as one, but for the cohesion of the crack behind it, which opens: so it
-/// has the factors of active and passive bolts. Bars that the rock stretches yield before the slope goes, by 0.28 m:
+/// Limit analysis is exact where the wedge slides as one, but for the cohesion of the crack behind it, which opens: so
+/// it has the factors of active and passive bolts. Bars that the rock stretches yield before the slope goes, by 0.28 m:
 /// their factor is that of passive ones but for the tolerance of the search, of which a page said 1.44.
 #[test]
 fn the_page_on_supports_has_the_factors_of_the_new_slope() {
