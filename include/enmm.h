@@ -453,6 +453,10 @@ enum enmm_name_kind
    * A drain, in the order of the case.
    */
   ENMM_NAME_DRAIN = 9,
+  /**
+   * A place on a joint that the case names by `[[joint_monitor]]`, in its order.
+   */
+  ENMM_NAME_JOINT_MONITOR = 10,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -639,6 +643,66 @@ typedef struct enmm_monitor_state {
    */
   double velocity_y;
 } enmm_monitor_state;
+
+/**
+ * Stress at a monitor now, of the plane through the stresses of the elements about it.
+ */
+typedef struct enmm_monitor_stress {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Stress xx, tension positive (Pa).
+   */
+  double stress_xx;
+  /**
+   * Stress yy, tension positive (Pa).
+   */
+  double stress_yy;
+  /**
+   * Stress xy (Pa).
+   */
+  double stress_xy;
+  /**
+   * Greatest principal stress in the plane (Pa).
+   */
+  double principal_max;
+  /**
+   * Least principal stress in the plane: the greatest compression (Pa).
+   */
+  double principal_min;
+  /**
+   * Direction of the greatest compression from the x axis, counter-clockwise (rad).
+   */
+  double principal_angle;
+} enmm_monitor_stress;
+
+/**
+ * A monitor of a joint now. Slip and shear stress are positive where the far side goes, or is pushed, to the right.
+ */
+typedef struct enmm_joint_monitor_state {
+  /**
+   * Size of this structure (bytes), set by the caller.
+   */
+  size_t struct_size;
+  /**
+   * Opening at the place, apart positive (m).
+   */
+  double opening;
+  /**
+   * Slip along the joint, far side to the right positive (m).
+   */
+  double slip;
+  /**
+   * Normal stress between the faces, tension positive (Pa).
+   */
+  double normal_stress;
+  /**
+   * Shear stress between the faces, as the slip (Pa).
+   */
+  double shear_stress;
+} enmm_joint_monitor_state;
 
 /**
  * A block now. Velocities are those of half an internal step ago, as the method has them.
@@ -1773,6 +1837,26 @@ enmm_status enmm_get_inlet_state(struct enmm_model *model, int32_t kind, uint32_
  * ENMM_NULL_ARGUMENT.
  */
 enmm_status enmm_get_monitor_state(struct enmm_model *model, uint32_t monitor, struct enmm_monitor_state *out);
+
+/**
+ * Writes the stress at a monitor with `stress = true`, by its place among the `[[monitor]]`s of the case; NaN where
+ * the rock has been excavated. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or reads no stress, or a struct_size that no version
+ * had, ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_monitor_stress(struct enmm_model *model, uint32_t monitor, struct enmm_monitor_stress *out);
+
+/**
+ * Writes the state of a monitor of a joint, by its place among the `[[joint_monitor]]`s of the case; NaN where a side
+ * of the joint has been excavated. `out->struct_size` must be set.
+ *
+ * Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or a struct_size that no version had,
+ * ENMM_NULL_ARGUMENT.
+ */
+enmm_status enmm_get_joint_monitor_state(struct enmm_model *model,
+                                         uint32_t monitor,
+                                         struct enmm_joint_monitor_state *out);
 
 /**
  * Returns the number of blocks, excavated ones included. It grows when rock breaks and when a stage parts blocks, and

@@ -1,14 +1,12 @@
 """A bar that breaks off a wall: the same bits through the C library, both FMUs, returns and another process."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from elsewhere import gone_on_elsewhere
 from fmu_support import Fmu, bits
 from test_ctypes_life import fingerprint
 
@@ -37,18 +35,6 @@ def step_of_the_break(model) -> int:
     raise AssertionError("the bar holds")
 
 
-CHILD = """
-import sys
-import enmm
-sys.path.insert(0, sys.argv[1])
-from test_breaks import STEPS, act, state
-with enmm.Model.from_file(sys.argv[2]) as model, open(sys.argv[3], "rb") as file:
-    model.restore(model.deserialize(file.read()))
-    act(model, int(sys.argv[4]), STEPS)
-    sys.stdout.write(repr(state(model)))
-"""
-
-
 def test_a_bar_breaks_to_the_same_bits(package, tmp_path):
     with package.Model.from_file(CASE) as model, model.save() as whole:
         assert (model.block_count, model.blocks_max, model.cuts) == (1, 4, [])
@@ -70,11 +56,7 @@ def test_a_bar_breaks_to_the_same_bits(package, tmp_path):
             assert model.block_count == 1 and model.cuts == []
             act(model, 0, STEPS)
             assert state(model) == expected
-    arguments = [sys.executable, "-c", CHILD, str(Path(__file__).parent), str(CASE), str(file), str(half)]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-    output = subprocess.run(arguments, env=environment, capture_output=True, text=True, timeout=120, check=False)
-    assert output.returncode == 0, output.stderr
-    assert output.stdout == repr(expected)
+    assert gone_on_elsewhere("test_breaks", CASE, file, half) == repr(expected)
 
 
 def test_a_record_of_a_host_follows_the_break_and_the_return(package, tmp_path):

@@ -1,11 +1,9 @@
 """A slope whose rock bridges break: the same bits through the C library, both FMUs, rollback and another process."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from elsewhere import gone_on_elsewhere
 from fmu_support import Fmu, bits
 from test_ctypes_life import fingerprint
 
@@ -45,18 +43,6 @@ def middle(package) -> int:
     return found[0] + 1
 
 
-CHILD = """
-import sys
-import enmm
-sys.path.insert(0, sys.argv[1])
-from test_bridges import STEPS, act, state
-with enmm.Model.from_file(sys.argv[2]) as model, open(sys.argv[3], "rb") as file:
-    model.restore(model.deserialize(file.read()))
-    act(model, int(sys.argv[4]), STEPS)
-    sys.stdout.write(repr(state(model)))
-"""
-
-
 def test_a_failure_goes_on_to_the_same_bits(package, tmp_path):
     half = middle(package)
     with package.Model.from_file(CASE) as model:
@@ -73,11 +59,7 @@ def test_a_failure_goes_on_to_the_same_bits(package, tmp_path):
                 assert state(model) == here
                 act(model, half, STEPS)
                 assert state(model) == expected
-    arguments = [sys.executable, "-c", CHILD, str(Path(__file__).parent), str(CASE), str(file), str(half)]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-    output = subprocess.run(arguments, env=environment, capture_output=True, text=True, timeout=120, check=False)
-    assert output.returncode == 0, output.stderr
-    assert output.stdout == repr(expected)
+    assert gone_on_elsewhere("test_bridges", CASE, file, half) == repr(expected)
 
 
 @pytest.mark.parametrize("version", [2, 3])

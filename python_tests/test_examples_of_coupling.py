@@ -28,6 +28,8 @@ def test_a_block_in_an_earthquake_slips_as_newmark_says(package, tmp_path):
     assert newmark[-1] > 0.1
     assert abs(slip[-1] - newmark[-1]) < 0.01 * newmark[-1]
     assert np.max(np.abs(slip - newmark)) < 0.01 * newmark[-1]
+    page = " ".join((FOLDER.parents[1] / "docs" / "coupling.md").read_text(encoding="utf-8").split())
+    assert f"it slips {slip[-1]:.4f} m, Newmark's {newmark[-1]:.4f} m" in page
     toe = result["slope"][:, 0]
     assert 0.05 < toe[-1] < 1.0, "the slope slips in the strong part"
     assert abs(toe[-1] - toe[-150]) < 1e-3 * toe[-1], "and has come to rest"

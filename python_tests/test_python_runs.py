@@ -310,6 +310,15 @@ def test_other_commands_of_the_program_are_functions(package, case, cases, tmp_p
     found = package.sample(uncertain, tmp_path / "sample", samples=8)
     assert found.table.rows == 8 and 0 <= found.interval[0] <= found.probability_of_failure <= 1
     assert pickle.loads(pickle.dumps(found)).record == found.record
+    swept = package.sweep(case, {"joint_law.joint.friction_deg": range(28, 37, 4)}, tmp_path / "sweep")
+    exact = [math.tan(math.radians(angle)) / math.tan(math.radians(30)) for angle in (28, 32, 36)]
+    assert swept.outputs == pytest.approx(exact, rel=1e-4), "a block on a plane of 30°"
+    low, high = exact[:2]
+    assert swept.crossing == pytest.approx(28 + 4 * (1 - low) / (high - low), rel=1e-4)
+    assert swept.table.rows == 3 and pickle.loads(pickle.dumps(swept)).record == swept.record
+    alone = package.sweep(case, {"joint_law.joint.friction_deg": [25.0, 35.0]}, one_by_one=True)
+    (effect,) = alone.effects
+    assert effect["range"] == pytest.approx((0.70021 - 0.46631) / 0.57735, rel=1e-4) and alone.crossing is None
     package.run(case.with_values({"stage[1].duration": 0.01}), tmp_path / "run")
     paper = package.report(tmp_path / "run", pdf=False)
     assert paper.html.is_file() and paper.pdf is None
@@ -343,6 +352,12 @@ WRONG = {
     "fos(case, stage='x')": ("InvalidArgumentError", 'stage: there is no static stage "x"'),
     "Result('absent')": (FileNotFoundError, "absent: has no summary.json"),
     "Fos('absent')": (FileNotFoundError, "absent: has no fos.json"),
+    "sweep(case, {})": ("InvalidArgumentError", "values: is empty, must have at least 1 key"),
+    "sweep(case, {'mesh.size': ['x']})": (TypeError, "must be one number"),
+    "sweep(case, {'mesh.size': [1, 1]})": ("InvalidArgumentError", "has 1 twice; give each number once"),
+    "sweep(case, {'mesh.size': []})": ("InvalidArgumentError", "is empty, must have at least 1 number"),
+    "sweep(case, {'mesh.siz': [1, 2]})": ("CaseError", "siz"),
+    "sweep(case, {'mesh.size': [1, 2]}, of='check')": ("InvalidArgumentError", "of: is 'check', must be one of bound"),
     "new('hill')": ("InvalidArgumentError", "kind: is 'hill', must be one of slope, topple"),
     "model.do_step(0.0, '0.01')": (TypeError, "h: is '0.01', must be one number"),
     "model.set_block_forces([0, 1], ['a', 2], 0)": (TypeError, "fx: is ..., must be a number or as many"),

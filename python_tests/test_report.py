@@ -174,7 +174,8 @@ def test_keys_play_step_zoom_and_colour(report):
     report.press("Home")
     report.press(" ", "Space")
     report.wait("enmm.player.time > enmm.film.start")
-    for key, name in zip("12345", ["displacement", "velocity", "stress", "block", "joint"]):
+    colours = ["displacement", "velocity", "stress", "shear", "block", "joint", "slip", "opening"]
+    for key, name in zip("12345678", colours):
         report.press(key)
         assert report.run("document.querySelector('[data-colour][aria-checked=true]').dataset.colour") == name
     scale = report.run("enmm.slope.camera.scale")
@@ -206,7 +207,7 @@ def test_the_tabulator_reaches_every_control_and_shows_where_it_is(report):
 def test_the_picture_shows_rock_and_sky(report, results, theme, tmp_path):
     report.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
     report.open((results / "report.html").as_uri())
-    report.press("4")
+    report.press("5")
     picture = Image.open(io.BytesIO(report.screenshot())).convert("RGB")
 
     def pixel(x: float, y: float) -> tuple[int, int, int]:
@@ -424,6 +425,137 @@ def test_the_film_button_saves_what_plays(report, tmp_path):
     width, height, differ = report.run(shown)
     # Encoders take even sizes.
     assert abs(width - size[0]) <= 1 and abs(height - size[1]) <= 1 and differ
+
+
+def numbers_of_elements(page, key: str) -> list[float]:
+    return page.run(f"Array.from(numbersOfElements(enmm.film.frames.at(-1), {key!r}))")
+
+
+def test_elements_have_the_numbers_of_the_frames(report, results):
+    last = meshio.read(max((results / "frames").glob("elements_*.vtu")))
+    quantum = report.run("enmm.film.frames.at(-1).elements.stress.quantum")
+    for key, name in (("stress", "mean_stress"), ("shear", "max_shear")):
+        # meshio sorts elements by their number of corners; the largest error of sorted numbers is no larger.
+        wanted = sorted(value for values in last.cell_data[name] for value in values)
+        found = sorted(numbers_of_elements(report, key))
+        assert len(found) == len(wanted) > 20
+        assert max(abs(a - b) for a, b in zip(found, wanted)) <= 1.5 * quantum
+        assert quantum <= 0.05 * max(map(abs, wanted))
+    # The free block moves by the numbers of its points, the held one not at all.
+    moved = max((last.point_data["displacement"] ** 2).sum(axis=1)) ** 0.5
+    assert max(numbers_of_elements(report, "displacement")) == pytest.approx(moved, rel=0.01)
+    speed = max((last.point_data["velocity"] ** 2).sum(axis=1)) ** 0.5
+    assert max(numbers_of_elements(report, "velocity")) == pytest.approx(speed, rel=0.03)
+    quiet(report)
+
+
+def test_joints_have_the_slip_of_the_frames(report, results):
+    joints = meshio.read(max((results / "frames").glob("joints_*.vtu")))
+    wanted = max(max(values) for values in joints.cell_data["slip"])
+    found = report.run("Array.from(numbersOfJoints(enmm.film.frames.at(-1), 'slip'))")
+    assert wanted > 0.01 and max(found) == pytest.approx(wanted, rel=0.05)
+    quiet(report)
+
+
+def test_each_element_has_its_colour(report):
+    report.run("document.querySelector('[data-colour=stress]').click()")
+    report.painted()
+    # Away from outlines and marks: pixels of middles of elements of the held block.
+    wrong = report.run("""(() => {
+        const { film, slope, limits } = enmm, frame = film.frames.at(-1), numbers = numbersOfElements(frame, "stress");
+        const ratio = slope.canvas.width / slope.canvas.clientWidth, wrong = [], seen = new Set();
+        eachElement(frame, (e) => {
+            const at = middleOfElement(slope, e).map((part) => Math.floor(part * ratio)),
+                step = stepOf(numbers[e], limits, false), wanted = RAMPS.cividis[step].match(/\\d+/g).map(Number);
+            const found = [...slope.pen.getImageData(...at, 1, 1).data].slice(0, 3);
+            seen.add(step);
+            if (found.join() !== wanted.join()) wrong.push([e, found, wanted]);
+        });
+        return [wrong.length, film.shape.elements, seen.size];
+    })()""")
+    # Marks of monitors and outlines may lie on a few.
+    assert wrong[0] <= 0.2 * wrong[1] and wrong[2] > 3, wrong
+    report.errors[:] = [error for error in report.errors if "willReadFrequently" not in error]
+    quiet(report)
+
+
+def heads(page) -> list[str]:
+    return page.run("[...document.querySelectorAll('#probe h2, #choice h2')].map((head) => head.textContent)")
+
+
+def test_a_click_reads_the_element_and_the_joint(report):
+    # The joint lies at y = 1 between x = 1 and 2; the block has slid to the right and lies on the base.
+    report.click(*place(report, 1.6, 1.0))
+    assert "Joint" in heads(report)
+    rows = "[...document.querySelectorAll('#probe tr')].map((row) => [...row.children].map((cell) => cell.textContent))"
+    names = [name for name, _ in report.run(rows)]
+    assert names[-3:] == ["State", "Opening", "Slip"]
+    charts = "[...document.querySelectorAll('#chart-quantity option')].map(({textContent}) => textContent)"
+    assert "Joint: opening and slip (m)" in report.run(charts)
+    report.click(*place(report, 1.5, 1.5))
+    assert heads(report) == ["Element", "Block 0"] or heads(report) == ["Element", "Block 1"]
+    found = dict(report.run(rows))
+    e, k = report.run("[enmm.choice.element, enmm.choice.block]")
+    stress = report.run(f"stressOfElement(enmm.film.frames.at(-1), {e}, {k})")
+    assert close(number(found["σxx"]), stress[0]) and close(number(found["σyy"]), stress[1])
+    assert {"Element: stress (Pa)", "Element: speed (m/s)"} <= set(report.run(charts))
+    series = report.run("enmm.charts.find(({name}) => name.startsWith('Element: stress')).series[2]")
+    assert close(series["values"][-1] if isinstance(series["values"], list) else 0.5 * sum(stress[:2]), 0.5 * sum(stress[:2]))
+    assert len(series["time"]) > 1
+    quiet(report)
+
+
+def test_keys_choose_a_place(report):
+    report.run("document.getElementById('slope').focus()")
+
+    def shift(key: str) -> None:
+        for kind in ("keyDown", "keyUp"):
+            report.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, modifiers=8)
+        report.painted()
+
+    shift("ArrowDown")
+    begun = report.run("enmm.cursor")
+    for _ in range(12):
+        shift("ArrowDown")
+    assert report.run("enmm.cursor") == [begun[0], begun[1] + 8 * 12]
+    assert heads(report)[-1].startswith("Block") and "Element" in heads(report)
+    assert report.run("document.getElementById('found').textContent") == ", ".join(heads(report))
+    report.press("Escape")
+    assert report.run("enmm.cursor") is None and heads(report) == ["Numbers"]
+    quiet(report)
+
+
+# Crosses have two lines for each element: thin ones of compression alone, or thick ones of tension.
+def test_crosses_can_be_switched_on(report):
+    picture = "enmm.picture().toDataURL()"
+    before = report.run(picture)
+    report.run("document.getElementById('crosses').click()")
+    report.painted()
+    assert report.run(picture) != before
+    report.run("document.getElementById('crosses').click()")
+    report.painted()
+    assert report.run(picture) == before
+    quiet(report)
+
+
+def test_the_page_of_fos_shows_the_trial_that_fails(enmm, page, cases, tmp_path):
+    answer = enmm("fos", cases / "plane_slide.toml", "-o", tmp_path, "--json")
+    assert answer.returncode == 0, answer.stderr
+    page.open((tmp_path / "report.html").as_uri())
+    page.painted()
+    times = page.run("enmm.film.frames.map(({time}) => time)")
+    assert len(times) == 20 and times[0] == 0 and times == sorted(set(times))
+    assert page.run("enmm.film.frames.every(({elements, time}) => elements && elements.time === time)")
+    record = json.loads((tmp_path / "fos.json").read_text())
+    fails = next(block for block in record["failing_blocks"])
+    moved = page.run(f"""enmm.film.frames.map(({{displacement_x: x, displacement_y: y, shape}}) => {{
+        const k = shape.places.get({fails["block"]});
+        return Math.hypot(x[k], y[k]);
+    }})""")
+    # It begins at rest and goes on and on.
+    assert moved[-1] - moved[0] == pytest.approx(fails["displacement"], rel=0.05)
+    assert moved[10] - moved[0] < 0.7 * (moved[-1] - moved[0])
+    quiet(page)
 
 
 @pytest.fixture

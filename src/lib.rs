@@ -42,6 +42,7 @@ mod fracture;
 pub mod geometry;
 mod mechanics;
 pub mod model;
+mod monitor;
 mod recut;
 mod rock;
 mod state;

@@ -17,6 +17,8 @@ fn bar() -> BoltSegment {
         rupture: 0.5,
         pretension: 5.0,
         active: true,
+        grout: None,
+        follows: false,
     }
 }
 
@@ -49,6 +51,7 @@ fn the_answer_is_the_force_at_the_end_of_the_step() {
         compliance: 0.3,
         approach: 0.0,
         force: 4.0,
+        stays: false,
     };
     let (dt, rate) = (0.1, 0.2);
     let force = row.answer(rate, dt, dt, 4.0);
@@ -61,7 +64,7 @@ fn the_answer_is_the_force_at_the_end_of_the_step() {
 
 #[test]
 fn a_bolt_without_its_rock_is_absent_whatever_it_did() {
-    let slack = BoltState { active: true, broken: false, rest: 2.0, natural: 2.0, force: 0.0 };
+    let slack = BoltState { active: true, rest: 2.0, natural: 2.0, ..BoltState::default() };
     let elastic = BoltState { force: 1e5, ..slack };
     let yielded = BoltState { rest: 2.1, ..elastic };
     let broken = BoltState { broken: true, force: 0.0, ..yielded };

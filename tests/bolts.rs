@@ -2,7 +2,7 @@
 //! checkpoints to the bit, and with a closed ledger.
 
 use crate::common::claims::{advance, assert_ledger, block_at};
-use crate::common::{refusal, run_stage, simulation};
+use crate::common::{refusal, run_stage, simulation, through_bytes};
 use enmm::model::Simulation;
 
 const G: f64 = 9.81;
@@ -167,4 +167,170 @@ fn a_bolt_through_an_opening_warns() {
     assert_eq!(sim.model().bolts.len(), 1);
     let warning = &sim.built().warnings.iter().find(|w| w.contains("outside the rock")).expect("a warning").clone();
     assert!(warning.contains("0.400 m"), "{warning}");
+}
+
+/// A held slab and a smaller one beside it, parted by a smooth joint at x = 0 that opens; a grouted bar from a plate on
+/// the small one's face through the joint far into the held one, and a pull on the small one.
+fn pulled(pull: f64, bar: &str, stages: &str) -> String {
+    format!(
+        "title = \"pull\"\n[domain]\noutline = [[-4, 0], [1, 0], [1, 1], [-4, 1]]\n[mesh]\nsize = 0.4\n\
+         [[joint]]\npoints = [[0, -1], [0, 2]]\n[joint_law.joint]\nfriction_deg = 0.0\n[gravity]\ny = 0\n\
+         [rock.rock]\ndensity = {DENSITY}\nyoung = 1e11\npoisson = 0.2\n[[fix]]\nblock = [-2, 0.5]\n\
+         [[fix]]\nedge = [[0, 0], [1, 0]]\naxes = \"y\"\n[[load]]\nkind = \"block\"\npoint = [0.5, 0.5]\n\
+         force = [{pull}, 0]\n[[bolt]]\npoints = [[1, 0.51], [-3.6, 0.51]]\nanchorage = \"grouted\"\nplate = true\n\
+         young = 2e11\narea = 5e-4\n{bar}\n{stages}"
+    )
+}
+
+/// Force (N/m) of the bar where it passes the middle between neighbouring points, by the distance from the joint (m).
+fn along(simulation: &Simulation) -> Vec<(f64, f64)> {
+    let rows = simulation.model().bolts.iter().zip(&simulation.state().bolts);
+    rows.map(|(segment, bar)| (-0.5 * (segment.points[0].x + segment.points[1].x), bar.force)).collect()
+}
+
+/// In rock that hardly strains the force falls off from the joint by e^(−αx), α² = bond stiffness/EA (I. W. Farmer
+/// 1975), and the whole pull passes the joint. Points a fifth of 1/α apart: (0.2)²/24 of x·α, and the rock strains.
+#[test]
+fn a_bond_that_holds_sheds_the_force_by_farmers_exponential() {
+    let (pull, bond_stiffness, axial): (f64, f64, f64) = (60e3, 4e8, 2e11 * 5e-4);
+    let mut sim = simulation(&pulled(pull, &format!("bond = 1e9\nbond_stiffness = {bond_stiffness:e}"), SETTLE));
+    let report = run_stage(&mut sim);
+    let alpha = (bond_stiffness / axial).sqrt();
+    let held: Vec<(f64, f64)> = along(&sim).into_iter().filter(|(x, _)| (0.0..1.2).contains(x)).collect();
+    assert!(held.len() > 8, "{held:?}");
+    for (x, force) in held {
+        let exact = pull * (-alpha * x).exp();
+        assert!((force / exact - 1.0).abs() < 0.01, "{x}: {force} of {exact}");
+    }
+    assert!(sim.state().bolts.iter().all(|bar| bar.slid == [0.0; 2]));
+    assert_ledger(&report);
+}
+
+/// Beyond that the bar slips next to the joint, where each metre holds `bond` and no more: the force falls in a line
+/// over pull/bond − 1/α, and by the exponential from there. At a spacing of 2 m the rock feels half of each bar. A pull
+/// of more than bond times length draws the bar out. The same bits on two threads and through a saved state.
+#[test]
+fn a_bond_that_slips_holds_by_its_length() {
+    let (bond, bond_stiffness, axial): (f64, f64, f64) = (200e3, 4e8, 2e11 * 5e-4);
+    let alpha = (bond_stiffness / axial).sqrt();
+    let keys = format!("bond = {bond:e}\nbond_stiffness = {bond_stiffness:e}\nspacing = 2.0");
+    let pull = 300e3;
+    let mut sim = simulation(&pulled(0.5 * pull, &keys, SETTLE));
+    let report = run_stage(&mut sim);
+    let slips = pull / bond - 1.0 / alpha;
+    for (x, force) in along(&sim).into_iter().filter(|(x, _)| (0.0..2.4).contains(x)) {
+        let exact = if x < slips { pull - bond * x } else { bond / alpha * (-alpha * (x - slips)).exp() };
+        assert!((2.0 * force - exact).abs() < 0.01 * pull, "{x}: {} of {exact}", 2.0 * force);
+    }
+    let bars = sim.model().bolts.iter().zip(&sim.state().bolts);
+    let slid: Vec<f64> = bars.filter(|(_, bar)| bar.slid[1] != 0.0).map(|(s, _)| -s.points[1].x).collect();
+    let farthest = slid.into_iter().fold(0.0, f64::max);
+    let step = sim.model().bolts[5].points[0].x - sim.model().bolts[5].points[1].x;
+    assert!((farthest - slips).abs() < step, "slips to {farthest} of {slips}");
+    let lost = report.ledger.bolt_dissipation();
+    assert!(lost > 0.0, "{lost}");
+    assert_ledger(&report);
+    // 3.6 m hold 720 kN: less passes the joint whole, more goes on drawing the bar out.
+    let drawn = |pull: f64| {
+        let mut sim = simulation(&pulled(0.5 * pull, &keys, SETTLE));
+        let steps = sim.steps_in(0.4);
+        advance(&mut sim, steps);
+        let most = forces(&sim).into_iter().fold(0.0, f64::max);
+        (2.0 * most, sim.motion_of(block_at(&sim, [0.5, 0.5])).displacement.x)
+    };
+    let [(held, stays), (full, goes)] = [drawn(600e3), drawn(1100e3)];
+    assert!((held - 600e3).abs() < 0.01 * 600e3, "{held}");
+    assert!((full - bond * 3.6).abs() < 0.01 * bond * 3.6, "{full} of {}", bond * 3.6);
+    assert!(goes > 2.0 * stays, "{stays} {goes}");
+}
+
+/// A grouted bar with a bond goes on from a saved state to the bit, and through threads.
+#[test]
+fn a_bond_keeps_its_bits() {
+    let text = pulled(150e3, "bond = 200e3\nbond_stiffness = 4e8\nyield_force = 2e5", DROP);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| {
+            let mut sim = simulation(&text);
+            advance(&mut sim, 400);
+            sim
+        })
+    };
+    let mut first = run(1);
+    assert!(first.state() == run(2).state(), "threads change bits");
+    let mut second = through_bytes(&first, &text);
+    advance(&mut first, 200);
+    advance(&mut second, 200);
+    assert!(first.state() == second.state());
+    assert!(first.state().bolts.iter().any(|bar| bar.slid[0] != 0.0));
+}
+
+/// Keys of a bond that do not go together, and one too stiff for the step.
+#[test]
+fn a_bond_says_what_it_needs() {
+    for (bar, message) in [
+        ("bond = 2e5", "bolt[0].bond_stiffness: is missing"),
+        ("bond_stiffness = 1e9", "bolt[0].bond_stiffness: belongs to"),
+        ("bond = 2e5\nbond_stiffness = 1e9\nfree_length = 0.2", "beside `free_length`"),
+        ("bond = 2e5\nbond_stiffness = 1e9\nsupport = \"passive\"\nyield_force = 1e5", "beside `support`"),
+        ("bond = 2e5\nbond_stiffness = 9e13", "bolt[0].bond_stiffness: is 9.000e13"),
+    ] {
+        let found = refusal(&pulled(0.0, bar, SETTLE));
+        assert!(found.contains(message), "{bar}: {found}");
+    }
+}
+
+/// A block of 2 m × 0.8 m between two held pillars, 1 m from each, and a skin along their feet.
+fn held_by_a_skin(strength: &str, stages: &str) -> String {
+    format!(
+        "title = \"skin\"\n[domain]\noutline = [[-3, 0], [-1, 0], [-1, 1], [-3, 1]]\n\
+         islands = [[[0, 0], [2, 0], [2, 0.8], [0, 0.8]], [[3, 0], [5, 0], [5, 1], [3, 1]]]\n[mesh]\nsize = 0.5\n\
+         [joint_law.joint]\nfriction_deg = 0.0\n[rock.rock]\ndensity = {DENSITY}\nyoung = 2e10\npoisson = 0.2\n\
+         [[fix]]\nblock = [-2, 0.5]\n[[fix]]\nblock = [4, 0.5]\n[[skin]]\nname = \"mesh\"\n\
+         line = [[-1, 0], [0, 0], [2, 0], [3, 0]]\nthickness = 0.1\nyoung = 1e7\ndistance = 10.0\n{strength}\n\
+         {stages}"
+    )
+}
+
+/// Two members that hang in a V: 2T·sin θ = W with T = EA(1/cos θ − 1), by bisection.
+fn tension_of_a_v(weight: f64, axial: f64) -> f64 {
+    let tension = |angle: f64| axial * (1.0 / angle.cos() - 1.0);
+    let (mut low, mut high) = (0.0, 1.5);
+    for _ in 0..100 {
+        let half: f64 = 0.5 * (low + high);
+        if 2.0 * tension(half) * half.sin() < weight { low = half } else { high = half }
+    }
+    tension(low)
+}
+
+/// A skin across a gap carries a loose block by its tension alone, as two bars in a V do, and breaks at its strength.
+#[test]
+fn a_skin_carries_a_block_over_a_gap_and_breaks_at_its_strength() {
+    let exact = tension_of_a_v(WEIGHT, 1e6);
+    let mut sim = simulation(&held_by_a_skin(&format!("tension = {:e}", 25.0 * exact), SETTLE));
+    let report = run_stage(&mut sim);
+    let found = forces(&sim);
+    assert_eq!(found.len(), 3);
+    assert!((found[0] / exact - 1.0).abs() < 0.01 && (found[2] / exact - 1.0).abs() < 0.01, "{found:?} {exact}");
+    assert_ledger(&report);
+    let strength = 0.8 * exact;
+    let mut sim = simulation(&held_by_a_skin(&format!("tension = {:e}", 10.0 * strength), SETTLE));
+    let mut most = 0.0f64;
+    while !sim.state().bolts[0].broken {
+        most = most.max(forces(&sim)[0]);
+        advance(&mut sim, 1);
+    }
+    assert!((most / strength - 1.0).abs() < 0.01, "{most} of {strength}");
+    assert_eq!(forces(&sim)[0], 0.0);
+}
+
+/// A stage installs all members of a skin by its name; members of one block are no mistake.
+#[test]
+fn a_stage_installs_a_skin_by_its_name() {
+    let stage = "[[stage]]\nname = \"spray\"\nkind = \"dynamic\"\nduration = 1.0\ninstall = [\"mesh\"]\n";
+    let sim = simulation(&held_by_a_skin("active = false", stage));
+    let names: Vec<_> = sim.case().bolts.iter().filter_map(|bolt| bolt.name.clone()).collect();
+    assert_eq!(names, ["mesh_1", "mesh_2", "mesh_3"]);
+    assert!(sim.state().bolts.iter().all(|bar| bar.active), "{:?}", sim.state().bolts);
+    assert!(sim.built().warnings.iter().all(|text| !text.contains("holds nothing")), "{:?}", sim.built().warnings);
 }

@@ -67,6 +67,7 @@ mod long_run;
 mod loops;
 mod mass_scaling;
 mod mechanism;
+mod monitors;
 mod moved_supports;
 mod near_pairs;
 mod objectivity;

@@ -5,6 +5,7 @@ use crate::geometry::{Point, Vector};
 use crate::mechanics::MassMatrix;
 
 use super::Pair;
+use super::grout::Grout;
 
 /// A free length of a bar between two material points; forces per metre of depth.
 #[doc(alias = "anchor")]
@@ -32,6 +33,10 @@ pub struct BoltSegment {
     pub pretension: f64,
     /// Whether it is there from the start.
     pub active: bool,
+    /// The ties of both points of the bar to those of the rock; none where both are one.
+    pub grout: Option<[Grout; 2]>,
+    /// Whether its first point is the second one of the segment before.
+    pub follows: bool,
 }
 
 /// State of a bar segment between two steps.
@@ -47,6 +52,10 @@ pub struct BoltState {
     pub natural: f64,
     /// Tension at the end of the last step (N/m).
     pub force: f64,
+    /// Slip (m) of a grouted bar at both points, along the rock towards its far end.
+    pub slip: [f64; 2],
+    /// The part of it that lasts without force (m).
+    pub slid: [f64; 2],
 }
 
 impl BoltState {
@@ -119,6 +128,8 @@ pub struct BoltRow {
     pub approach: f64,
     /// Tension (N/m).
     pub force: f64,
+    /// Whether that stays through the step, as of a grouted bar in balance at its start.
+    pub stays: bool,
 }
 
 impl BoltSegment {
@@ -136,13 +147,17 @@ impl BoltSegment {
     /// The state of a segment that is installed at its current length (m), with its pretension (Eq. 40).
     pub fn install(&self, length: f64) -> BoltState {
         let rest = length - self.pretension / self.stiffness;
-        BoltState { active: true, broken: false, rest, natural: rest, force: self.pretension }
+        BoltState { active: true, rest, natural: rest, force: self.pretension, ..BoltState::default() }
     }
 
-    /// Energy (J/m) that the bar stores at a length (m).
+    /// Energy (J/m) that the bar stores at a length (m), with that of its grout.
     pub fn energy(&self, state: &BoltState, length: f64) -> f64 {
-        let stretch = (length - state.rest).max(0.0);
-        if state.active && !state.broken { 0.5 * self.stiffness * stretch * stretch } else { 0.0 }
+        let stretch = (length + (state.slip[1] - state.slip[0]) - state.rest).max(0.0);
+        let own = if state.active && !state.broken { 0.5 * self.stiffness * stretch * stretch } else { 0.0 };
+        // The first point is the second one of the segment before.
+        let points = usize::from(self.follows)..2;
+        let tied = |grout: [Grout; 2]| points.map(|k| grout[k].energy(state.slip[k], state.slid[k])).sum::<f64>();
+        own + self.grout.filter(|_| state.active).map_or(0.0, tied)
     }
 
     /// The segment at the start of a step: `centres` are those of the blocks, `predicted` the velocities without
@@ -167,6 +182,7 @@ impl BoltSegment {
             yield_force: self.yield_force,
             compliance,
             force: state.force,
+            stays: self.grout.is_some(),
         }
     }
 
@@ -198,6 +214,9 @@ impl BoltRow {
     /// 0 for a bar that the step resolves to that of contacts for a stiff one (large κ = k·W·dt²), so that a soft bar
     /// loses no energy to the scheme.
     pub fn answer(&self, rate: f64, dt: f64, kick: f64, theta: f64) -> f64 {
+        if self.stays {
+            return self.force;
+        }
         let wa = self.compliance * kick;
         let kappa = self.stiffness * wa * dt;
         let a = self.stiffness * dt * (theta * kappa / (1.0 + kappa));

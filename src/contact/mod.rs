@@ -3,6 +3,7 @@
 //! files or FMI.
 
 mod bolt;
+mod bonded;
 mod boundary;
 mod broad_phase;
 mod buckets;
@@ -11,6 +12,7 @@ mod constants;
 mod facing;
 mod found;
 mod frame;
+mod grout;
 mod law;
 mod narrow_phase;
 mod pair;
@@ -22,6 +24,7 @@ mod vertex_edge;
 mod vertex_rule;
 
 pub use bolt::{BoltCondition, BoltRow, BoltSegment, BoltState, BoltView};
+pub use bonded::GroutBuffers;
 pub use boundary::{Boundary, Corner, EdgeId, NodeId, SideEnd, SideId};
 pub use broad_phase::{NearPair, NeighbourList, SearchGrid, SearchView};
 pub use climb::Slide;
@@ -29,6 +32,7 @@ pub use constants::DetectionRule;
 pub use facing::{Facing, Facings};
 pub use found::{FoundContact, FoundContacts};
 pub use frame::Frames;
+pub use grout::Grout;
 pub use law::{Bond, Closure, Damaged, JointLaw, LawId, LiftLoad, Lifted, Limits, Roughness, SectionBond, Softening};
 pub use narrow_phase::{AcceptedPairs, NarrowPhase, NearSides, find_contacts, prefiltered};
 pub use pair::Pair;

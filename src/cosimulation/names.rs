@@ -1,7 +1,7 @@
 //! Names of what a model has by number, and the state of monitors.
 
-use crate::model::MonitorState;
 use crate::model::case::key::list;
+use crate::model::{JointMonitorState, MonitorState, Stress};
 
 use super::{Cosimulation, CosimulationError};
 
@@ -28,6 +28,8 @@ pub enum Named {
     Rain,
     /// A drain, in the order of the case.
     Drain,
+    /// A monitor of a joint, in the order of the case.
+    JointMonitor,
 }
 
 impl Named {
@@ -44,6 +46,7 @@ impl Named {
             Self::Head => "heads",
             Self::Rain => "rains",
             Self::Drain => "drains",
+            Self::JointMonitor => "monitors of joints",
         }
     }
 }
@@ -66,6 +69,7 @@ impl Cosimulation {
             Named::Head => case.heads.len(),
             Named::Rain => case.rains.len(),
             Named::Drain => case.drains.len(),
+            Named::JointMonitor => case.joint_monitors.len(),
         }
     }
 
@@ -91,6 +95,7 @@ impl Cosimulation {
             Named::Head => case.heads[index].name.clone(),
             Named::Rain => case.rains[index].name.clone(),
             Named::Drain => case.drains[index].name.clone(),
+            Named::JointMonitor => case.joint_monitors[index].name.clone(),
         })
     }
 
@@ -115,6 +120,27 @@ impl Cosimulation {
     pub fn monitor_state(&self, monitor: usize) -> Result<MonitorState, CosimulationError> {
         self.check_named(Named::Monitor, monitor)?;
         Ok(self.simulation.monitor(monitor))
+    }
+
+    /// Stress at a monitor of the case, NaN where the rock has been excavated.
+    ///
+    /// # Errors
+    /// There is no such monitor, or it reads no stress.
+    pub fn monitor_stress(&self, monitor: usize) -> Result<Stress, CosimulationError> {
+        self.check_named(Named::Monitor, monitor)?;
+        self.simulation.monitor_stress(monitor).ok_or_else(|| {
+            let remedy = "set `stress = true` at it in the case";
+            CosimulationError::value("monitor", monitor, "one that reads the stress", remedy)
+        })
+    }
+
+    /// A monitor of a joint of the case, NaN where a side of the joint has been excavated.
+    ///
+    /// # Errors
+    /// There is no such monitor.
+    pub fn joint_monitor_state(&self, monitor: usize) -> Result<JointMonitorState, CosimulationError> {
+        self.check_named(Named::JointMonitor, monitor)?;
+        Ok(self.simulation.joint_monitors()[monitor])
     }
 
     pub(super) fn check_named(&self, kind: Named, index: usize) -> Result<(), CosimulationError> {

@@ -18,7 +18,7 @@ mod yield_lanes;
 
 pub use crate::rock::{
     Criterion, Deformation, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, PreStress, Strained, StressField,
-    YieldSurface, YieldingRock, critical_dt, equivalent_strain,
+    Weakness, YieldSurface, YieldingRock, critical_dt, equivalent_strain,
 };
 
 pub use averaging::{Averages, Averaging, RUN, fill_runs};

@@ -144,6 +144,7 @@ impl Simulation {
             static_stretch: _,
             displacement: _,
             velocity: _,
+            since: _,
             stage_displacement: _,
             stage_force: _,
             acceleration: _,
@@ -187,8 +188,7 @@ impl Simulation {
         self.check_stages(model, state)?;
         check_drive(model, drive)?;
         check_events(model, events)?;
-        check_ledger(ledger)?;
-        check_counters(counters)
+        check_ledger(ledger).and_then(|()| check_counters(counters))
     }
 
     /// Checks sections that have broken, builds the model with them, and checks its worst sections.
@@ -245,10 +245,13 @@ impl Simulation {
         let covers = model.covers.cover_count();
         let is_static = self.case().stages[state.stage as usize].kind == StageKind::Static;
         let of_static = if is_static { covers } else { 0 };
+        let is_since = self.case().since_stage().is_some_and(|since| since <= state.stage as usize);
+        let of_since = if is_since { covers } else { 0 };
         let of_implicit = if state.acceleration.is_empty() { 0 } else { covers };
         for (what, list, own, most) in [
             ("displacement", &state.displacement, covers, LENGTH),
             ("velocity", &state.velocity, covers, RATE),
+            ("since", &state.since, of_since, LENGTH),
             ("stage_displacement", &state.stage_displacement, of_static, LENGTH),
             ("stage_force", &state.stage_force, of_static, FORCE),
             ("acceleration", &state.acceleration, of_implicit, RATE),
@@ -288,10 +291,13 @@ impl Simulation {
         check_seepage(model, state.seepage.as_ref(), state.stage)?;
         same("law_switch", &state.law_switch, &switch)?;
         for (k, bolt) in state.bolts.iter().enumerate() {
-            let BoltState { active: _, broken: _, rest, natural, force } = *bolt;
+            let BoltState { active: _, broken: _, rest, natural, force, slip: [a, b], slid: [c, d] } = *bolt;
             number(format_args!("bolts[{k}].rest"), rest, LENGTH)?;
             number(format_args!("bolts[{k}].natural"), natural, LENGTH)?;
             number(format_args!("bolts[{k}].force"), force, FORCE)?;
+            for slip in [a, b, c, d] {
+                number(format_args!("bolts[{k}].slip"), slip, LENGTH)?;
+            }
         }
         Ok(())
     }

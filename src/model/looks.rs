@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use crate::monitor::JointMonitorState;
 use crate::state::Ledger;
 use crate::step::StepReport;
 
@@ -16,6 +17,8 @@ pub(super) struct Looks {
     pub energies: OnceLock<Ledger>,
     /// States of the blocks.
     pub blocks: OnceLock<Vec<BlockState>>,
+    /// Monitors of joints.
+    pub joints: OnceLock<Vec<JointMonitorState>>,
     /// Contacts of the last step.
     pub contacts: OnceLock<Vec<ContactView>>,
 }

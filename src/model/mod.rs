@@ -10,6 +10,7 @@ mod grounds;
 mod inlets;
 mod looks;
 pub mod mechanism;
+mod monitors;
 mod observe;
 mod openings;
 pub mod overlap;
@@ -44,6 +45,9 @@ pub use simulation::Simulation;
 pub use tune::Tunable;
 
 pub use crate::contact::{BoltCondition, BoltSegment, BoltState, ContactState};
+pub use crate::monitor::{
+    JOINT_MONITOR_QUANTITIES, JointMonitorState, LinePoint, MONITOR_STRESS_QUANTITIES, Stress, stress,
+};
 pub use crate::state::bytes::{self, BytesError};
 pub use crate::state::{
     BALANCE, BoltEnergies, Counters, Drive, ENERGIES, Event, EventKind, FlowBalance, Inputs, Ledger, Port, PortKind,

@@ -399,14 +399,6 @@ impl Simulation {
         step::energies(self.model(), self.state(), &self.workspace.mass_matrix)
     }
 
-    /// Displacement and velocity of a monitor.
-    pub fn monitor(&self, k: usize) -> (Vector, Vector) {
-        let (element, point) = self.built.monitors[k];
-        let model = self.model();
-        let sample = |field: &[Vector]| model.sample(element, point, field);
-        (sample(&self.state().displacement), sample(&self.state().velocity))
-    }
-
     /// Linear (kg·m/s per metre) and angular momentum (kg·m²/s per metre) about the origin of all free blocks.
     pub fn momentum(&self) -> (Vector, f64) {
         step::momentum(self.model(), self.state(), &self.workspace.mass_matrix)

@@ -80,6 +80,9 @@ impl Simulation {
         let at_rest = stage == 0 || matches!(self.regime, Regime::Static { .. });
         self.regime = self.regime_of(stage);
         let (model, state) = (&self.built.model, &mut self.state);
+        if self.case.since_stage() == Some(stage) {
+            state.since.clone_from(&state.displacement);
+        }
         step::begin_stage(model, self.regime, state, stage as u32, start, at_rest);
         step::prepare(model, state, &mut self.workspace);
         let after = self.energies();

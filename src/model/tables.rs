@@ -7,4 +7,5 @@ pub use crate::contact::{
 pub use crate::cover::{BlockId, BoundaryPiece, CoverId, ElementId, Outlines};
 pub use crate::flow::{FlowNet, FlowPiece, Inlet, Outcrop, Wet, wet};
 pub use crate::mechanics::{Resultants, SectionFailure};
+pub use crate::monitor::{Faces, JointMonitor, LinePlace, Monitors, StressFit};
 pub use crate::state::{Cut, Model, Seconds, Workspace, WorstSection};

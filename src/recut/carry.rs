@@ -28,6 +28,9 @@ fn carry_over(
     let mut state = was.clone();
     state.displacement = part_of(&was.displacement, parents.covers.iter().map(|c| c.index()));
     state.velocity = part_of(&was.velocity, parents.covers.iter().map(|c| c.index()));
+    if !was.since.is_empty() {
+        state.since = part_of(&was.since, parents.covers.iter().map(|c| c.index()));
+    }
     state.removed = part_of(&was.removed, parents.blocks.iter().map(|b| b.index()));
     state.support_force = part_of(&was.support_force, lineage.supports.iter().copied());
     state.support_rest = part_of(&was.support_rest, lineage.supports.iter().copied());
@@ -149,7 +152,7 @@ fn carry_bolts(lineage: &Lineage, (old, was): (&Model, &State), new: &Model, sta
             Some(k) => was.bolts[*k],
             None if is_there(segment.bolt) => {
                 let length = segment.span(&new.covers.star_position, &state.displacement).norm();
-                BoltState { active: true, broken: false, rest: length, natural: length, force: 0.0 }
+                BoltState { active: true, rest: length, natural: length, ..BoltState::default() }
             }
             None => BoltState::default(),
         })

@@ -5,8 +5,10 @@ mod deformation;
 mod elasticity;
 mod hoek_brown;
 mod plasticity;
+mod weakness;
 
 pub use deformation::{Deformation, PreStress, StressField};
 pub use elasticity::{Elasticity, critical_dt};
 pub use hoek_brown::HoekBrown;
 pub use plasticity::{Criterion, MohrCoulomb, PlasticStrain, Strained, YieldSurface, YieldingRock, equivalent_strain};
+pub use weakness::Weakness;

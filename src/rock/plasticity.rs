@@ -4,6 +4,7 @@
 use enmm_lanes::{Arithmetic, Values};
 
 use super::hoek_brown::{Curve, HoekBrown, Onto, Returned};
+use super::weakness::{Both, WeakPlane, Weakness};
 use super::{Deformation, Elasticity};
 
 /// Plastic strain xx, yy, xy, zz of an element in the axes that rotate with it.
@@ -59,6 +60,8 @@ pub struct YieldingRock {
     pub is_porous: bool,
     /// Its strength.
     pub criterion: Criterion,
+    /// A plane along which it is weaker.
+    pub weakness: Option<Weakness>,
 }
 
 /// Which stresses a rock withstands, and how it flows beyond.
@@ -110,7 +113,8 @@ impl YieldingRock {
                 (Planes::beside(&curve), Some(curve))
             }
         };
-        YieldSurface { elasticity, plane_stress, planes, curve, least: self.least_stress(factor) }
+        let weak = self.weakness.map(|weakness| weakness.plane(factor));
+        YieldSurface { elasticity, plane_stress, planes, curve, weak, least: self.least_stress(factor) }
     }
 
     /// Stress (Pa) beside which a rest is nothing where no other stress acts: cohesion, or uniaxial strength.
@@ -213,6 +217,8 @@ pub struct YieldSurface {
     planes: Planes,
     /// The curve in place of the shear planes, which then hold at the tensile strength alone.
     curve: Option<Curve>,
+    /// A plane along which the rock is weaker.
+    weak: Option<WeakPlane>,
     /// Stress (Pa) beside which a rest is nothing where no other stress acts.
     least: f64,
 }
@@ -266,7 +272,7 @@ impl Planes {
 impl YieldSurface {
     /// Tensile strength (Pa) of all axes together, at which the surface ends.
     pub fn tension(&self) -> f64 {
-        self.planes.tension
+        self.weak.map_or(self.planes.tension, |plane| plane.tension.min(self.planes.tension))
     }
 
     /// Stress xx, yy, xy, zz (Pa) in the axes that rotate with the element, before any growth of plastic strain.
@@ -293,7 +299,9 @@ impl YieldSurface {
         let beyond = largest - smallest + (largest + smallest) * sine - values.splat(self.planes.shear);
         let beyond = values.max(beyond, largest - values.splat(self.planes.tension));
         let most = values.max(values.max(largest, -smallest), values.splat(self.least));
-        values.at_most(beyond, values.splat(ON_SURFACE) * most)
+        let tolerance = values.splat(ON_SURFACE) * most;
+        let inside = values.at_most(beyond, tolerance);
+        self.weak.as_ref().map_or(inside, |plane| inside & plane.inside(values, trial, tolerance))
     }
 
     /// Energy (J/m²) that a growth of plastic strain takes between the deformations of two steps: with the mean of the
@@ -336,10 +344,11 @@ impl YieldSurface {
     /// How far (Pa) a stress xx, yy, xy, zz lies beyond the surface, measured as |s₁ − s₃| or s₁; negative inside.
     pub fn excess(&self, stress: [f64; 4]) -> f64 {
         let sorted = Principal::of(stress, self.plane_stress).sorted;
-        match &self.curve {
+        let own = match &self.curve {
             None => PLANES[..ORDERED].iter().map(|&p| self.planes.beyond(p, &sorted)).fold(f64::NEG_INFINITY, f64::max),
             Some(curve) => curve.beyond([sorted[0], sorted[2]]).max(self.planes.beyond(PLANES[3], &sorted)),
-        }
+        };
+        self.weak.map_or(own, |plane| own.max(plane.beyond(&stress)))
     }
 
     /// As [`Self::flow`], of rock that withstands a pull (Pa) on all sides beyond its own strength (Eq. 59a).
@@ -348,8 +357,20 @@ impl YieldSurface {
         self.flow([xx - pull, yy - pull, xy, zz])
     }
 
-    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; `None` inside (Eq. 57).
+    /// Plastic strain xx, yy, xy, zz that brings a trial stress (Pa) back to the surface; `None` inside (Eqs. 57, 59c).
     pub fn flow(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
+        let Some(plane) = &self.weak else { return self.flow_between_planes(trial) };
+        let (elasticity, plane_stress) = (&self.elasticity, self.plane_stress);
+        let rock = |trial: &[f64; 4]| self.flow_between_planes(*trial);
+        let relief = |flow: &PlasticStrain| relief(elasticity, plane_stress, flow);
+        let greatest = |stress: &[f64; 4]| Principal::of(*stress, plane_stress).sorted.map(f64::abs);
+        let tolerance = |stress: &[f64; 4]| ON_SURFACE * greatest(stress).into_iter().fold(self.least, f64::max);
+        let (rock, relief, tolerance) = (&rock, &relief, &tolerance);
+        Both { plane, elasticity, plane_stress, rock, relief, tolerance }.flow(&trial)
+    }
+
+    /// The same for the rock between its planes of weakness.
+    fn flow_between_planes(&self, trial: [f64; 4]) -> Option<PlasticStrain> {
         let principal = Principal::of(trial, self.plane_stress);
         let sorted = principal.sorted;
         let most = sorted.iter().fold(self.least, |a, s| a.max(s.abs()));
@@ -526,7 +547,7 @@ mod tests {
         };
         let (friction, dilation) = (tangent(friction_deg), tangent(dilation_deg));
         let criterion = Criterion::MohrCoulomb(MohrCoulomb { friction, cohesion: 1e6, dilation, tension });
-        YieldingRock { elasticity, plane_stress, is_porous: false, criterion }
+        YieldingRock { elasticity, plane_stress, is_porous: false, criterion, weakness: None }
     }
 
     /// Stress after the return of a trial stress.
@@ -596,7 +617,7 @@ mod tests {
         let tension = tension.map(|share| share * envelope.tension());
         let criterion = Criterion::HoekBrown(hoek_brown::HoekBrown::new(envelope, dilation, tension));
         let elasticity = Elasticity::plane_strain(1e9, 0.3, 2500.0);
-        (YieldingRock { elasticity, plane_stress: false, is_porous: false, criterion }, envelope)
+        (YieldingRock { elasticity, plane_stress: false, is_porous: false, criterion, weakness: None }, envelope)
     }
 
     /// Triaxial compression with the axis in the plane or out of it, and extension: at every confining pressure the

@@ -71,6 +71,7 @@ impl State {
             displacement,
             velocity,
             acceleration,
+            since,
             stage_displacement,
             stage_force,
             contacts,
@@ -110,7 +111,10 @@ impl State {
         } = self;
         let of_columns = columns.iter().map(|column| sum(&[&column.displacement, &column.velocity])).sum::<usize>();
         vec![
-            ("motion", sum(&[displacement, velocity, acceleration, stage_displacement, stage_force]) + of_columns),
+            (
+                "motion",
+                sum(&[displacement, velocity, acceleration, since, stage_displacement, stage_force]) + of_columns,
+            ),
             ("contacts", contacts.bytes() + bonds.bytes() + sections.bytes() + found.bytes()),
             ("near pairs", neighbours.bytes()),
             ("plastic strain", plastic.bytes()),

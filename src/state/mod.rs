@@ -114,6 +114,8 @@ pub struct State {
     pub water_density: f64,
     /// Water in the joints, if it flows.
     pub seepage: Option<Seepage>,
+    /// Displacements from which those of outputs count (m); empty while they count from the start.
+    pub since: Vec<Vector>,
     /// Displacements at the start of a static stage (m).
     pub stage_displacement: Vec<Vector>,
     /// Forces out of balance at the start of a static stage (N/m).
@@ -142,12 +144,17 @@ clone_without_allocating! {
     State {
         stage stage_start stage_starts most_rest stage_step step part dt_last displacement velocity contacts
         bonds sections found friction_delay neighbours support_force support_rest worst_sections cuts fix_active removed
-        laws law_switch damping water_density seepage stage_displacement stage_force drive bolts plastic columns
+        laws law_switch damping water_density seepage since stage_displacement stage_force drive bolts plastic columns
         acceleration static_stretch events ledger counters
     }
 }
 
 impl State {
+    /// Displacements of the covers (m) from which those of outputs count; none while they count from the start.
+    pub fn counted_from(&self) -> Option<&[Vector]> {
+        Some(&self.since[..]).filter(|since| !since.is_empty())
+    }
+
     /// Time (s) that is left of the internal step in progress.
     pub fn rest_of_step(&self, model: &Model) -> f64 {
         model.dt - self.part

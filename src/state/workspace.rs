@@ -1,8 +1,8 @@
 //! Buffers of a step; never part of a checkpoint.
 
 use crate::contact::{
-    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, LawId, NearSides, OpenClose,
-    PenetratingContacts, SearchGrid, SectionForces, SideId, SupportRow, VertexEdge,
+    AcceptedPairs, BlockImpulse, BoltRow, ContactCache, ContactSetting, Frames, GroutBuffers, LawId, NearSides,
+    OpenClose, PenetratingContacts, SearchGrid, SectionForces, SideId, SupportRow, VertexEdge,
 };
 use crate::cover::{BlockId, ElementId};
 use crate::geometry::Vector;
@@ -179,6 +179,8 @@ pub struct SupportBuffers {
     pub rows: Vec<SupportRow>,
     /// Bar segments of this step.
     pub bolts: Vec<BoltRow>,
+    /// Balance of grouted bars.
+    pub grout: GroutBuffers,
 }
 
 /// Open–close iteration of a step.

@@ -1,7 +1,7 @@
 //! Rock bolts of a case.
 
 use crate::keys::shared::{DIRECTION, LENGTH, PLACE};
-use crate::keys::unit::{NEWTON, NUMBER, PASCAL, SQUARE_METRE};
+use crate::keys::unit::{NEWTON, NEWTON_PER_METRE, NUMBER, PASCAL, SQUARE_METRE};
 use crate::keys::{Range, Rule, keys, words};
 
 words! {
@@ -60,6 +60,23 @@ const PRETENSION: Rule = YIELD_FORCE
 const FREE_LENGTH: Rule =
     LENGTH.hint("leave it out for a tenth of the mesh size").usual([0.01, 100.0], "0.05 to 0.5 m are usual at a joint");
 
+/// Forces per metre of a bar at which it slips in its grout.
+const BOND: Rule = Range::above(0.0)
+    .to(1e12)
+    .of(NEWTON_PER_METRE)
+    .hint("1e5 to 5e5 in rock")
+    .usual([5e3, 5e6], "grout holds 1e5 to 5e5 N per metre of a bar")
+    .example(250e3)
+    .label("Bond");
+/// The same over the slip.
+const BOND_STIFFNESS: Rule = Range::above(0.0)
+    .to(1e15)
+    .of(PASCAL)
+    .hint("1e8 to 1e10 is usual")
+    .usual([1e6, 1e12], "grout has 1e8 to 1e10 N/m per metre of a bar")
+    .example(1e9)
+    .label("Stiffness of bond");
+
 keys! {
     /// A row of equal elastic–plastic bars that carry tension across joints.
     #[derive(Default)]
@@ -89,6 +106,16 @@ keys! {
         pub pretension: f64 => PRETENSION,
         /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
         pub free_length: Option<f64> => FREE_LENGTH,
+        /// Force (N) per metre at which one grouted bar slips along the rock; default: it is fixed to the rock but for
+        /// a free length at each joint.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub bond: Option<f64> => BOND,
+        /// Force per metre over the slip (N/m per metre) of one bar with a `bond`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub bond_stiffness: Option<f64> => BOND_STIFFNESS,
+        /// Whether a plate holds the head of a bar with a bond to the face.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        pub plate: bool,
         /// Force in `enmm fos` and `enmm bound`: that of an active or of a passive support. Default: `fos` lets the bar
         /// stretch with the rock, and `bound` takes the most that it can carry.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -96,6 +123,9 @@ keys! {
         /// Whether it is there from the start; else a stage installs it by name.
         #[serde(default = "crate::keys::yes")]
         pub active: bool,
+        /// Whether it is a member of a skin.
+        #[serde(skip)]
+        pub of_skin: bool,
     }
 }
 
@@ -154,6 +184,16 @@ keys! {
         pub pretension: f64 => PRETENSION,
         /// Free length (m) at a joint that a grouted bar crosses; default: a tenth of the mesh size.
         pub free_length: Option<f64> => FREE_LENGTH,
+        /// Force (N) per metre at which one grouted bar slips along the rock; default: it is fixed to the rock but for
+        /// a free length at each joint.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub bond: Option<f64> => BOND,
+        /// Force per metre over the slip (N/m per metre) of one bar with a `bond`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub bond_stiffness: Option<f64> => BOND_STIFFNESS,
+        /// Whether a plate holds the head of a bar with a bond to the face.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        pub plate: bool,
         /// Force in `enmm fos` and `enmm bound`: that of an active or of a passive support. Default: `fos` lets the bar
         /// stretch with the rock, and `bound` takes the most that it can carry.
         #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -13,7 +13,9 @@ impl Case {
     /// # Errors
     /// A case that cannot be written as JSON.
     pub fn fingerprint(&self) -> Result<String, Invalid> {
-        let acting = Self { title: String::new(), output: Output::default(), fmu: None, ..self.clone() };
+        // From when displacements count is part of the state.
+        let output = Output { since: self.output.since.clone(), ..Output::default() };
+        let acting = Self { title: String::new(), output, fmu: None, ..self.clone() };
         let bytes = serde_json::to_vec(&acting).map_err(|error| Invalid {
             key: String::new(),
             message: format!("the case cannot be written as JSON: {error}"),

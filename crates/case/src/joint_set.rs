@@ -6,7 +6,7 @@ use crate::keys::unit::{DEGREE, NUMBER};
 use crate::keys::{Range, Rule, keys, words};
 
 /// Remedy for a dip.
-const DIP: &str = "a dip is measured down from the horizontal; `dips` or `dip_direction_deg` gives the side";
+pub(crate) const DIP: &str = "a dip is measured down from the horizontal; `dips` or `dip_direction_deg` gives the side";
 /// Standard deviations of directions: three of the greatest one are a right angle.
 const SCATTER: Rule = Range::from(0.0)
     .to(30.0)
@@ -234,11 +234,28 @@ keys! {
     }
 }
 
+/// Joints that have a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NamedJoint {
+    /// A joint of the case, by its place.
+    One(usize),
+    /// All joints of a set, by its place.
+    Set(usize),
+}
+
 impl Case {
     /// Word for a joint set in messages, tables and pictures: its name, or its key.
     pub fn joint_set_name(&self, set: usize) -> String {
         let name = self.joint_sets.get(set).and_then(|set| set.name.clone());
         name.unwrap_or_else(|| format!("joint_set[{set}]"))
+    }
+
+    /// The joints that a name means: that of a set, or the place of one, as `joint[2]`.
+    pub fn joint_by_name(&self, name: &str) -> Option<NamedJoint> {
+        let set = (0..self.joint_sets.len()).find(|&set| self.joint_set_name(set) == name);
+        let number = || name.strip_prefix("joint[")?.strip_suffix(']')?.parse::<usize>().ok();
+        let joint = || number().filter(|&joint| joint < self.joints.len());
+        set.map(NamedJoint::Set).or_else(|| joint().map(NamedJoint::One))
     }
 
     /// Word for a bolt in messages, tables and pictures: its name, or its key.

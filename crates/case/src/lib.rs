@@ -30,11 +30,13 @@ mod port;
 mod random;
 pub mod record;
 mod rock;
+mod skin;
 mod solver;
 mod stage;
 pub mod text;
 mod validate;
 mod water;
+mod weakness;
 
 use std::collections::BTreeMap;
 
@@ -55,22 +57,25 @@ pub use hoek_brown::{Envelope, Equivalent, HoekBrown, Tangent};
 pub use in_situ::InSitu;
 pub use joint_law::{Breaks, DILATION_SLIP, JointLaw, JointLawKind};
 pub use joint_set::{
-    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, Section, Side, Tessellation,
+    AngleDistribution, Bridge, CellShape, Cut, Distribution, JointSet, LawRegion, NamedJoint, Section, Side,
+    Tessellation,
 };
 pub use key::Invalid;
 pub use load::{Gravity, InitialVelocity, Load, LoadKind};
 pub use notes::{FmuNotes, ReportNotes};
 pub use orientation::{AZIMUTH, Orientation, Orientations, dip_in_section, trace_angle};
-pub use output::{Monitor, Output};
+pub use output::{JointMonitor, Line, Monitor, Output};
 pub use pictures::{PictureKind, Pictures};
 pub use ponding::{Pond, PondPart};
 pub use port::Port;
 pub use random::{Ensemble, EnsembleOutput, RandomCorrelation, RandomDistribution, RandomOf, RandomVariable, Sampling};
-pub use record::BaseMotionKind;
+pub use record::{BaseMotionKind, STANDARD_GRAVITY};
 pub use rock::{Plane, Rock};
+pub use skin::Skin;
 pub use solver::{CornerContacts, Integrator, Newmark, Solver};
 pub use stage::{LawChange, LawSwitch, Stage, StageCut, StageKind};
 pub use water::{Water, WaterSurface};
+pub use weakness::PlaneOfWeakness;
 
 /// A closed or open list of points (m).
 pub type PointList = Vec<[f64; 2]>;
@@ -155,6 +160,9 @@ pub struct Case {
     /// Rows of equal rock bolts with their heads on the face.
     #[serde(default, rename = "bolt_pattern", skip_serializing_if = "Vec::is_empty")]
     pub bolt_patterns: Vec<BoltPattern>,
+    /// Shotcrete and mesh along faces.
+    #[serde(default, rename = "skin", skip_serializing_if = "Vec::is_empty")]
+    pub skins: Vec<Skin>,
     /// Velocities at the start.
     #[serde(default, rename = "initial_velocity")]
     pub initial_velocities: Vec<InitialVelocity>,
@@ -188,6 +196,12 @@ pub struct Case {
     /// Points whose motion goes into the history.
     #[serde(default, rename = "monitor")]
     pub monitors: Vec<Monitor>,
+    /// Gauges across joints.
+    #[serde(default, rename = "joint_monitor", skip_serializing_if = "Vec::is_empty")]
+    pub joint_monitors: Vec<JointMonitor>,
+    /// Rows of points, as of inclinometers.
+    #[serde(default, rename = "line", skip_serializing_if = "Vec::is_empty")]
+    pub lines: Vec<Line>,
     /// Files to write and their intervals.
     #[serde(default)]
     pub output: Output,
@@ -213,6 +227,12 @@ impl Case {
     /// Whether any rock has a strength that can be exceeded.
     pub fn yields(&self) -> bool {
         self.rocks.values().any(Rock::yields)
+    }
+
+    /// The stage with whose start displacements of outputs begin to count, if not with that of the run.
+    pub fn since_stage(&self) -> Option<usize> {
+        let since = self.output.since.as_ref()?;
+        self.stages.iter().position(|stage| stage.name == *since).map(|stage| stage + 1)
     }
 
     /// Whether any rock breaks.

@@ -39,6 +39,11 @@ words! {
         /// `stage1_flow.png`: pressure head, flow and tables of the water that flows in joints, outcrops that seep, and
         /// drains.
         Flow = "flow",
+        /// `stage1_lines.png`: displacement across and along lines at the ends of the stages so far.
+        Lines = "lines",
+        /// `record.png` and `spectra.png`, of cases with ground motions: acceleration of the records over time, and
+        /// response spectra of records and monitors.
+        Spectra = "spectra",
     }
 }
 
@@ -54,7 +59,7 @@ pub enum Pictures {
 }
 
 /// Pictures of a run that names none.
-const USUAL: [PictureKind; 8] = [
+const USUAL: [PictureKind; 10] = [
     PictureKind::Model,
     PictureKind::Deformed,
     PictureKind::History,
@@ -63,6 +68,8 @@ const USUAL: [PictureKind; 8] = [
     PictureKind::MeanStressContours,
     PictureKind::Strength,
     PictureKind::Flow,
+    PictureKind::Lines,
+    PictureKind::Spectra,
 ];
 
 impl Pictures {

@@ -8,20 +8,22 @@ use crate::keys::{Rule, unit};
 use crate::record::{BaseMotionKind, STANDARD_GRAVITY};
 use crate::{
     Bolt, BoltPattern, Case, Drain, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, LawChange, Load, Mesh,
-    Output, Port, Rain, RandomOf, Rock, RockFracture, Stage, Tessellation, Water,
+    Output, PlaneOfWeakness, Port, Rain, RandomOf, Rock, RockFracture, Skin, Stage, Tessellation, Water,
 };
 
 /// Tables whose keys have usual values, by their place in a case: without the numbers of lists, and with `*` for names.
-const TABLES: [(&str, &[Rule]); 19] = [
+const TABLES: [(&str, &[Rule]); 21] = [
     ("rock.*", Rock::KEYS),
     ("rock.*.hoek_brown", HoekBrown::KEYS),
     ("rock.*.fracture", RockFracture::KEYS),
+    ("rock.*.plane_of_weakness", PlaneOfWeakness::KEYS),
     ("in_situ", InSitu::KEYS),
     ("joint_law.*", JointLaw::KEYS),
     ("stage", Stage::KEYS),
     ("stage.law", LawChange::KEYS),
     ("bolt", Bolt::KEYS),
     ("bolt_pattern", BoltPattern::KEYS),
+    ("skin", Skin::KEYS),
     ("joint_set", JointSet::KEYS),
     ("tessellation", Tessellation::KEYS),
     ("mesh", Mesh::KEYS),

@@ -3,7 +3,7 @@
 use crate::keys::shared::{ANGLE, DILATION, PLACE, ROCK_DENSITY, STRENGTH};
 use crate::keys::unit::{NUMBER, PASCAL};
 use crate::keys::{Range, keys, words};
-use crate::{HoekBrown, PointList, RockFracture};
+use crate::{HoekBrown, PlaneOfWeakness, PointList, RockFracture};
 
 words! {
     /// Plane strain or plane stress.
@@ -44,6 +44,9 @@ keys! {
         /// Generalized Hoek–Brown strength, in place of `friction_deg` and `cohesion`; needs plane strain.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub hoek_brown: Option<HoekBrown>,
+        /// Planes along which rock that yields is weaker than elsewhere; default: it is as strong in all directions.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub plane_of_weakness: Option<PlaneOfWeakness>,
         /// Dilation angle (degrees), at most `friction_deg` (associated flow); default: 0, at which it keeps its
         /// volume.
         pub dilation_deg: Option<f64> => DILATION.hint("0 is usual").label("Dilation"),
@@ -70,7 +73,8 @@ impl Rock {
     /// Whether water has pressure in its pores: where its strength is that of effective stresses. A plate under plane
     /// stress drains to its sides, and strength without friction is that of total stresses.
     pub fn is_porous(&self) -> bool {
-        let has_friction = self.friction_deg.is_some_and(|angle| angle > 0.0) || self.hoek_brown.is_some();
+        let along = self.plane_of_weakness.is_some_and(|plane| plane.friction_deg > 0.0);
+        let has_friction = self.friction_deg.is_some_and(|angle| angle > 0.0) || self.hoek_brown.is_some() || along;
         has_friction && self.plane == Plane::Strain
     }
 

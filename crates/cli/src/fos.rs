@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use enmm::model::BoltCondition;
-use enmm::model::case::Support;
+use enmm::model::case::{STANDARD_GRAVITY, Support};
 use enmm_report::PAGE;
 use enmm_run::fos::{Found, remedy};
 use enmm_run::summary::BoltRecord;
-use enmm_run::{FosError, FosOptions};
+use enmm_run::{FosError, FosOptions, Seismic};
 use enmm_stability::left_out_stages;
 use enmm_stability::limit_analysis::DUCTILE;
+use enmm_stability::strength_reduction::seismic::{Direction, SeismicTrial, YieldAcceleration};
 use enmm_stability::strength_reduction::{
     End, FailingBlock, MechanismOptions, Progress, Reduction, TOLERANCE, Trial, Verdict,
 };
@@ -57,6 +58,11 @@ pub struct Arguments {
     /// More than one gives the error of the mesh.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10))]
     meshes: u16,
+    /// Look for the yield acceleration as well: the horizontal acceleration of all rock, out of the slope, over that of
+    /// gravity, at which the slope just stands; with Newmark's block under the records of the case. The slope falls to
+    /// the side of its lower ground, or to that which is named.
+    #[arg(long, value_name = "SIDE", num_args = 0..=1, require_equals = true)]
+    seismic: Option<Option<Side>>,
     /// Threads; default: all. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -72,6 +78,24 @@ pub struct Arguments {
     /// Print each trial as a JSON object before that; how the Python package follows a search.
     #[arg(long, hide = true, requires = "json")]
     trials: bool,
+}
+
+/// The side to which a slope falls.
+#[derive(Clone, Copy, ValueEnum)]
+enum Side {
+    /// To smaller x.
+    Left,
+    /// To greater x.
+    Right,
+}
+
+impl From<Side> for Direction {
+    fn from(side: Side) -> Self {
+        match side {
+            Side::Left => Self::Left,
+            Side::Right => Self::Right,
+        }
+    }
 }
 
 /// Heads the columns of [`row`].
@@ -95,6 +119,8 @@ fn find(arguments: &Arguments) -> Outcome {
         pictures: !arguments.no_pictures,
         stage: arguments.stage.clone(),
         meshes: arguments.meshes.into(),
+        seismic: arguments.seismic.is_some(),
+        direction: arguments.seismic.flatten().map(Direction::from),
         interrupt: Some(&INTERRUPT),
     };
     options.check().or_fail(BAD_INPUT)?;
@@ -119,7 +145,17 @@ fn find(arguments: &Arguments) -> Outcome {
             }
         });
     };
-    let found = enmm_run::fos(&loaded, &options, &mut hear);
+    let mut hear_seismic = |trial: &SeismicTrial, progress: Progress| {
+        search.trial(progress.trials, progress.expected, || {
+            if arguments.trials {
+                print_line(&seismic_line(trial, progress));
+            }
+            if !arguments.json {
+                print_line(&seismic_row(trial, progress));
+            }
+        });
+    };
+    let found = enmm_run::fos(&loaded, &options, &mut hear, &mut hear_seismic);
     drop(search);
     let found = found.map_err(|error| match error {
         FosError::NoRest(_) => Failure::new(error, FAILED).on(&loaded),
@@ -136,6 +172,18 @@ pub fn trial_line(trial: &Trial, progress: Progress) -> String {
     let Progress { trials, expected } = progress;
     let text = format!("trial {trials} of about {expected}, F = {:.4} {}", trial.factor, trial.verdict.name());
     serde_json::json!({ "trial": text, "done": trials, "expected": expected }).to_string()
+}
+
+/// The same of a trial with an acceleration of all rock.
+fn seismic_line(trial: &SeismicTrial, progress: Progress) -> String {
+    let Progress { trials, expected } = progress;
+    let text = format!("trial {trials} of about {expected}, k = {:.5} {}", trial.coefficient, trial.verdict().name());
+    serde_json::json!({ "trial": text, "done": trials, "expected": expected }).to_string()
+}
+
+fn seismic_row(trial: &SeismicTrial, progress: Progress) -> String {
+    let number = format!("{} of ~{}", progress.trials, progress.expected);
+    format!("{number:<9}k = {:7.5}  {:<8}  {}", trial.coefficient, trial.verdict().name(), trial.word())
 }
 
 fn row(t: &Trial, progress: Progress) -> String {
@@ -164,11 +212,15 @@ fn report(arguments: &Arguments, found: &Found, directory: &Path, told: Option<&
         let page = format!("{:<20} {}", "page to open", directory.join(PAGE).display());
         let searches =
             found.searches.iter().map(|search| result(search, found, told)).chain(chips(found)).chain(meshes(found));
+        let searches = searches.chain(found.seismic.as_ref().map(seismic));
         let page = (!arguments.no_pictures).then_some(page);
         print_line(searches.chain([results]).chain(page).collect::<String>().trim_end());
     }
     if found.meshes.as_ref().is_some_and(|meshes| meshes.is_interrupted) {
         return Ok(fail(&"interrupted; the factors of the meshes so far are kept", INTERRUPTED));
+    }
+    if found.seismic.as_ref().and_then(|seismic| seismic.found.as_ref()).is_some_and(|k| k.end == End::Interrupted) {
+        return Ok(fail(&"interrupted; the trials of the yield acceleration so far are kept", INTERRUPTED));
     }
     let main = found.main();
     let message = remedy(main).unwrap_or_default();
@@ -288,6 +340,55 @@ fn meshes(found: &Found) -> Option<String> {
     };
     lines.push(format!("{:<20} {text}", "error of the mesh"));
     Some(lines.join("\n") + "\n")
+}
+
+/// The yield acceleration, Newmark's block and the run, as lines of a name and a text.
+fn seismic(seismic: &Seismic) -> String {
+    let mut lines = vec![String::new()];
+    let mut tell = |name: &str, text: String| lines.push(format!("{name:<20} {text}"));
+    if let Some(found) = &seismic.found {
+        tell("yield acceleration", yield_text(found));
+        match &found.bound {
+            Ok(bound) => tell("limit analysis", format!("ky at most {bound:.4}, where its factor is 1")),
+            Err(refused) => tell("limit analysis", format!("none: {refused}")),
+        }
+        if let Some(trial) = found.failing.as_ref().and_then(|failing| failing.first_unstable()) {
+            let way = found.mechanism().map_or_else(String::new, |mechanism| format!(" by {}", mechanism.noun()));
+            tell("mechanism", format!("{} blocks{way}: {:.4} m²", trial.failing.len(), trial.failing_area()));
+        }
+    }
+    for block in &seismic.blocks {
+        tell(
+            "Newmark's block",
+            format!(
+                "{:.4} m under {} with a peak of {:.3} g, {:.4} m under it reversed",
+                block.displacement,
+                block.record,
+                block.pga / STANDARD_GRAVITY,
+                block.reversed
+            ),
+        );
+    }
+    if let Some(run) = &seismic.run {
+        let slip = run.slip.map_or_else(String::new, |slip| format!(", slip of a joint up to {slip:.4} m"));
+        let (stage, summary) = (&run.stage, run.summary.display());
+        tell("the run", format!("{:.4} m in stage {stage}{slip} ({summary})", run.displacement));
+    }
+    lines.extend(seismic.remedy.iter().map(|remedy| format!("note: {remedy}")));
+    lines.join("\n") + "\n"
+}
+
+/// The coefficient of the yield acceleration with its bracket and side.
+fn yield_text(found: &YieldAcceleration) -> String {
+    let side = found.direction.name();
+    match (found.coefficient(), found.low, found.high) {
+        (Some(k), Some(low), Some(high)) => {
+            format!("ky = {k:.4}, {:.3} m/s² to the {side} (stands at {low:.4}, not at {high:.4})", k * found.gravity)
+        }
+        (_, Some(low), _) => format!("ky at least {low:.4} to the {side}"),
+        (_, None, Some(high)) => format!("ky below {high:.4} to the {side}"),
+        (_, None, None) => "none".to_owned(),
+    }
 }
 
 /// Greatest force of each bolt, and by which convention.

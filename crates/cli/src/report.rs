@@ -14,7 +14,7 @@ use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, print_line
 /// Arguments of `enmm report`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Directory of results of enmm run, fos, bound or sample; those in its directories fos, bound and sample count
+    /// Directory of results of enmm run, fos, bound, sample or sweep; those in its directories of these names count
     /// too.
     #[arg(value_name = "DIR")]
     directory: PathBuf,

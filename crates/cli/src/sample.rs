@@ -12,8 +12,8 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::case::CaseArguments;
 use crate::fos::trial_line;
-use crate::run::{directory_of, print_record, results_folder};
-use crate::workers::{WorkArguments, Workers, warn};
+use crate::run::{directory_of, results_folder};
+use crate::workers::{WorkArguments, Workers, report};
 use crate::{BAD_INPUT, INTERRUPTED, OrFail, Outcome, print_line};
 
 /// Arguments of `enmm sample`.
@@ -59,7 +59,8 @@ fn find(arguments: &Arguments) -> Outcome {
     let directory = results_folder(arguments.output.as_ref(), directory_of(&arguments.case.path), work.force)?;
     let workers = Workers { case: &arguments.case, loaded: &loaded, work, quiet: arguments.json };
     let (found, options) = workers.find(directory, |options, ask, hear| ensemble(&loaded, options, ask, hear))?;
-    report(arguments, &found, &options)
+    let json = arguments.json.then_some((&*options.directory, "ensemble.json"));
+    report(json, || table(&found, &options), found.rows.len(), [&found.failed, &found.doubtful])
 }
 
 /// The case; of an ensemble with a look at the middle of its random values, so that wrong keys are found at once.
@@ -92,16 +93,6 @@ fn work_out(arguments: &Arguments, loaded: &LoadedCase, hash: &str) -> ExitCode 
     let outputs: Map<String, Json> = row.outputs.into_iter().collect();
     print_line(&json!({ "outputs": outputs, "message": row.message }).to_string());
     ExitCode::SUCCESS
-}
-
-fn report(arguments: &Arguments, found: &EnsembleResult, options: &EnsembleOptions) -> Outcome {
-    if arguments.json {
-        print_record(&options.directory, "ensemble.json")?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    print_line(&table(found, options));
-    warn(found.rows.len(), &found.failed, &found.doubtful);
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Results, as lines of a name and a text.

@@ -2,7 +2,6 @@
 //! tornado.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use enmm::model::case::EnsembleOutput;
@@ -14,9 +13,9 @@ use enmm_run::{
 };
 
 use crate::case::CaseArguments;
-use crate::run::{directory_for, print_record, results_folder};
-use crate::workers::{WorkArguments, Workers, warn};
-use crate::{BAD_INPUT, FAILED, OrFail, Outcome, print_line};
+use crate::run::{directory_for, results_folder};
+use crate::workers::{WorkArguments, Workers, report};
+use crate::{BAD_INPUT, FAILED, OrFail, Outcome};
 
 /// Name of the spreadsheet of a sweep.
 const SPREADSHEET: &str = "sweep.xlsx";
@@ -100,7 +99,8 @@ fn work_out(arguments: &Arguments) -> Outcome {
         let tables = enmm_export::tables(&options.directory).and_then(|tables| enmm_export::workbook(&tables));
         write_atomic(&path, &tables.or_fail(FAILED)?).or_fail(FAILED)?;
     }
-    report(arguments, &found, &options)
+    let json = arguments.json.then_some((&*options.directory, "sweep.json"));
+    report(json, || table(&found, &options), found.rows.len(), [&found.failed, &found.doubtful])
 }
 
 /// The sweep that the arguments ask for.
@@ -118,16 +118,6 @@ fn load(case: &CaseArguments, sweep: &Sweep) -> Result<LoadedCase, CaseError> {
     let loaded = case.load()?;
     sweep.settings().iter().try_for_each(|settings| case.load_with(settings).map(drop))?;
     Ok(loaded)
-}
-
-fn report(arguments: &Arguments, found: &SweepResult, options: &EnsembleOptions) -> Outcome {
-    if arguments.json {
-        print_record(&options.directory, "sweep.json")?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    print_line(&table(found, options));
-    warn(found.rows.len(), &found.failed, &found.doubtful);
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Results, as lines of a name and a text.

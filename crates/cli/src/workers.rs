@@ -3,7 +3,7 @@
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
 use std::thread;
 
 use clap::Args;
@@ -15,8 +15,8 @@ use serde_json::Value as Json;
 use crate::case::CaseArguments;
 use crate::interrupt::{INTERRUPT, listen as listen_for_interrupts};
 use crate::progress::Count;
-use crate::run::check_folder;
-use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, listed, tell_line};
+use crate::run::{check_folder, print_record};
+use crate::{BAD_INPUT, FAILED, Failure, INTERRUPTED, OrFail, Outcome, listed, print_line, tell_line};
 
 /// Exit status of a panic.
 const PANIC: i32 = 101;
@@ -113,8 +113,27 @@ impl Workers<'_> {
     }
 }
 
+/// Prints what a command found: its record as JSON, or a table, and warnings of samples without an answer.
+///
+/// # Errors
+/// The record cannot be read again.
+pub fn report(
+    json: Option<(&Path, &str)>,
+    table: impl FnOnce() -> String,
+    n: usize,
+    [failed, doubtful]: [&[(usize, String)]; 2],
+) -> Outcome {
+    if let Some((directory, name)) = json {
+        print_record(directory, name)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    print_line(&table());
+    warn(n, failed, doubtful);
+    Ok(ExitCode::SUCCESS)
+}
+
 /// Warns of samples without an answer and of factors above their bound.
-pub fn warn(n: usize, failed: &[(usize, String)], doubtful: &[(usize, String)]) {
+fn warn(n: usize, failed: &[(usize, String)], doubtful: &[(usize, String)]) {
     let named = |list: &[(usize, String)]| {
         let shown = list.iter().map(|(k, message)| format!("{k} ({message})")).collect::<Vec<_>>();
         listed(shown.into_iter())

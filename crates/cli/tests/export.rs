@@ -145,7 +145,7 @@ fn frames_are_chosen_by_number_and_time() {
     refused(&["--time", "1e9"], &["has no frame at 1000000000, must be from 0 to", "--time"]);
     place.enmm(&["export", "case", "--dxf", "case/blocks.csv"]).assert_bad_input(&["must end with .dxf", "--dxf"]);
     place.enmm(&["export", "case", "--xlsx", "t.xlsx", "--frame", "1"]).assert_bad_input(&["--frame", "--geojson"]);
-    fs::write(place.path("case/film.bin"), "enmmfil5 and no more").expect("written");
+    fs::write(place.path("case/film.bin"), "enmmfil6 and no more").expect("written");
     refused(&[], &["film.bin", "run the command that wrote it again"]);
     fs::remove_file(place.path("case/film.bin")).expect("removed");
     refused(&[], &["holds no film.bin", "enmm run"]);

@@ -265,6 +265,39 @@ fn finer_meshes_tell_the_error_of_the_mesh() {
     assert!(json(&place.path("out/fos.json"))["factor_of_safety"] == searches[0]["factor_of_safety"]);
 }
 
+/// ky = tan(φ − α) of a block on a plane, with Newmark's block under a rectangular pulse of 4 m/s² for 0.2 s, into the
+/// slope as it is and out of it reversed: A (A − ky g) t²/(2 ky g), and the run beside it.
+#[test]
+fn the_yield_acceleration_stands_beside_newmarks_block_and_the_run() {
+    let pulse = "[[base_motion]]\ntable = [[0.0, 4.0], [0.2, 4.0]]\nkind = \"acceleration\"\nstage = \"quake\"\n\
+                 [[stage]]\nname = \"quake\"\nkind = \"dynamic\"\nduration = 0.3\n";
+    let place = Place::with(&incline(0.65, pulse).replace("duration = 5.0", "duration = 1.0"));
+    place.answers(0, &["run", "case.toml"]);
+    let answer = place.answers(0, &["fos", "case.toml", "--seismic", "--tolerance", "0.01"]);
+    answer.assert_printed(&["yield acceleration", "Newmark's block", "the run"]);
+    let seismic = json(&place.path("case/fos/fos.json"))["seismic"].clone();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap_or_else(|| panic!("{seismic}"));
+    // The plane falls by 1 in 2 (tan α = 0.5), and tan φ = 0.65.
+    let exact = (0.65 - 0.5) / (1.0 + 0.65 * 0.5);
+    let k = number(&seismic["yield_coefficient"]);
+    assert!((k / exact - 1.0).abs() < 0.01, "{k} of {exact}");
+    let block = &seismic["newmark"][0];
+    let yields = k * number(&seismic["gravity"]);
+    let way = 4.0 * (4.0 - yields) * 0.2 * 0.2 / (2.0 * yields);
+    let ways = [number(&block["displacement"]), number(&block["displacement_reversed"])];
+    let out = if seismic["direction"] == "left" { 0 } else { 1 };
+    assert!((ways[out] / way - 1.0).abs() < 1e-9 && ways[1 - out] == 0.0, "{ways:?} of {way}");
+    assert!(number(&seismic["run"]["displacement"]) > 0.0, "{seismic}");
+    assert!(place.path("case/fos/seismic.csv").is_file() && place.path("case/fos/seismic.png").is_file());
+    place.answers(0, &["report", "case", "--no-pdf"]);
+    let report = fs::read_to_string(place.path("case/report_a4.html")).expect("a report");
+    assert!(report.contains("<h2>Earthquake</h2>") && report.contains("Yield acceleration over gravity"));
+    place.answers(0, &["fos", "case.toml", "--tolerance", "0.1"]);
+    assert!(!place.path("case/fos/seismic.csv").exists(), "a search without it removes that of the search before");
+    let refused = place.answers(2, &["fos", "case.toml", "--seismic=up"]);
+    assert!(refused.stderr.contains("left") && refused.stderr.contains("right"), "{refused:?}");
+}
+
 /// Generated joints are those of the mesh of the case, and so are crumbs: one of 0.00125 m² is between the defaults of
 /// the least block of the first two meshes.
 #[test]

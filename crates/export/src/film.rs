@@ -10,7 +10,7 @@ use crate::bytes::Bytes;
 use crate::error::ExportError;
 
 /// First bytes of a film of this version, and bytes before the body of a chunk.
-const MAGIC: [u8; 8] = *b"enmmfil5";
+const MAGIC: [u8; 8] = *b"enmmfil6";
 const HEADER: usize = 16;
 /// Numbers of a block: the first have all four bytes, and the first three are its rigid motion.
 const FULL: usize = 2;
@@ -134,7 +134,7 @@ impl Film {
             }
             b"OUTL" => self.outlines.push(outlines(&decompress_to_vec_zlib(body).ok()?)?),
             b"FRAM" => self.frames.push((time, self.outlines.len().checked_sub(1)?, body.to_owned())),
-            b"ROWS" | b"NOTE" => {}
+            b"MESH" | b"ELEM" | b"ROWS" | b"NOTE" => {}
             _ => return None,
         }
         Some(())

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use enmm_export::{Instant, Scene, drawing, features};
 use enmm_report::{
-    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, FilmWriter, Frame, Head, Outline, Structures, SupportFrame,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, FilmWriter, Frame, Head, Mesh, Outline, Structures,
+    SupportFrame,
 };
 use serde_json::Value;
 
@@ -40,7 +41,16 @@ fn head() -> Head {
 fn outline(id: u32, rock: u16, loops: Vec<Vec<[f64; 2]>>) -> Outline {
     let points = &loops[0];
     let middle = [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64);
-    Outline { id, fixed: id == 0, rock, area: 1.0 + f64::from(id), mass: 2e3, centroid: middle, loops }
+    Outline {
+        id,
+        fixed: id == 0,
+        rock,
+        area: 1.0 + f64::from(id),
+        mass: 2e3,
+        centroid: middle,
+        loops,
+        mesh: Mesh::default(),
+    }
 }
 
 /// A floor of 8 m × 2 m with a hole, a block of 4 m × 3 m on its left half, and one on its right half that is

@@ -10,8 +10,8 @@ fn unknown_key_names_the_nearest_known_key() {
         "young = 5e10",
         "yung = 5e10",
         "LINE: rock.granite.yung: unknown key \"yung\", did you mean `young`? Known keys: blocks, cohesion, \
-         density, dilation_deg, fracture, friction_deg, hoek_brown, plane, poisson, region, tension, young; rename or \
-         remove it",
+         density, dilation_deg, fracture, friction_deg, hoek_brown, plane, plane_of_weakness, poisson, region, \
+         tension, young; rename or remove it",
     );
 }
 
@@ -22,9 +22,10 @@ fn unknown_section_names_the_nearest_known_section() {
         "[mehs]",
         "LINE: mehs: unknown key \"mehs\", did you mean `mesh`? Known keys: base_motion, bolt, bolt_pattern, \
          bridge, cut, domain, drain, ensemble, fix, flow, fmu, fracture, free_field, gravity, head, in_situ, \
-         initial_velocity, joint, joint_law, joint_set, law_region, layers, load, mesh, monitor, output, port, \
-         quiet, rain, random, random_correlation, report, rock, section, solver, stage, tessellation, title, \
-         transform, water; rename or remove it",
+         initial_velocity, joint, joint_law, joint_monitor, joint_set, law_region, layers, line, load, mesh, monitor, \
+         output, port, quiet, rain, random, random_correlation, report, rock, section, skin, solver, stage, \
+         tessellation, \
+         title, transform, water; rename or remove it",
     );
 }
 
@@ -72,7 +73,8 @@ fn wrong_type_says_expected_and_found() {
 #[test]
 fn wrong_type_names_all_types_and_words() {
     let kinds = "model, deformed, history, energy, displacement, joints, joint_stress, stress, velocity, covers, \
-                 displacement_contours, mean_stress_contours, strength, flow";
+                 displacement_contours, mean_stress_contours, strength, flow, lines, \
+                 spectra";
     for (value, shown) in [("3", "the integer 3"), ("\"model\"", "the string \"model\"")] {
         assert_refused(
             "frame_interval = 0.5",
@@ -571,4 +573,43 @@ fn hoek_brown_says_its_limits_and_what_excludes_it() {
     let error =
         error_of(&edited("young = 1e9\npoisson = 0.3\nplane", "young = 1e9\ntension = 1e5\npoisson = 0.3\nplane"));
     assert!(error.contains("add friction_deg, cohesion or hoek_brown, or remove it"), "{error}");
+}
+
+/// Planes of weakness: what they need, their strengths, and their direction in one way.
+#[test]
+fn planes_of_weakness_say_their_limits() {
+    let young = "young = 5e10";
+    let table = |keys: &str| format!("{young}\ncohesion = 1e6\nplane_of_weakness = {{ {keys} }}");
+    let cases = [
+        (format!("{young}\nplane_of_weakness = {{ angle_deg = 30, friction_deg = 20 }}"), "rock that never yields"),
+        (table("friction_deg = 20"), "has no direction; add `angle_deg`"),
+        (table("angle_deg = 30, dip_deg = 30, friction_deg = 20"), "keep one of them"),
+        (table("dip_deg = 30, friction_deg = 20"), "its side is missing"),
+        (table("angle_deg = 30, dips = \"left\", friction_deg = 20"), "belongs to `dip_deg`"),
+        (table("angle_deg = 30, friction_deg = 0"), "has friction_deg 0 and cohesion 0"),
+        (table("angle_deg = 30, friction_deg = 20, dilation_deg = 25"), "at least 0 and at most 20"),
+        (table("angle_deg = 30, friction_deg = 45, cohesion = 1e5, tension = 2e5"), "ends at cohesion/tan(friction"),
+        (table("angle_deg = 30, friction_deg = 90"), "less than 90"),
+    ];
+    for (to, message) in cases {
+        let error = error_of(&edited(young, &to));
+        assert!(error.contains("plane_of_weakness") && error.contains(message), "{to}: {error}");
+    }
+}
+
+/// Skins: what they need, and what does not go together.
+#[test]
+fn skins_say_their_limits() {
+    let skin = |keys: &str| format!("[[skin]]\nthickness = 0.1\nyoung = 15e9\n{keys}\n[mesh]");
+    for (keys, message) in [
+        ("line = [[0, 0]]", "skin[0].line: has 1 points, must have at least 2"),
+        ("line = [[0, 0], [0, 0]]", "skin[0].line[1]: is the same as the point before"),
+        ("line = [[0, 0], [1, 0]]\nactive = false", "skin[0].active: is false, and without a name"),
+        ("line = [[0, 0], [1, 0]]\ntension = 3e6\nrupture_strain = 1e-5", "skin[0].rupture_strain: is 0.00001"),
+        ("line = [[0, 0], [9, 0]]\ndistance = 1e-9", "skin[0].distance: gives 10001 points"),
+        ("line = [[0, 0], [1, 0]]\ntension = -1", "skin[0].tension: is -1 Pa"),
+    ] {
+        let error = error_of(&edited("[mesh]", &skin(keys)));
+        assert!(error.contains(message), "{keys}: {error}");
+    }
 }

@@ -12,6 +12,7 @@ mod issue_units_and_planes_were_believed;
 mod issue_values_in_another_unit_were_believed;
 mod key_reference;
 mod limits;
+mod pages;
 mod record_formats;
 mod records;
 mod support;

@@ -18,6 +18,8 @@ pub struct BoltLine {
     pub force: f64,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
+    /// Slip (m) of a grouted bar along the rock at both ends, towards its far end; 0 without a bond.
+    pub slip: [f64; 2],
     /// Its condition.
     pub condition: BoltCondition,
 }
@@ -44,6 +46,7 @@ pub fn bolts(simulation: &Simulation) -> Vec<BoltLine> {
             bolt: segment.bolt,
             force: now.force,
             plastic_elongation: now.rest - now.natural,
+            slip: now.slip,
             condition: now.condition(),
         }
     };

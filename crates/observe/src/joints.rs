@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use enmm::geometry::{Point, Vector};
-use enmm::model::tables::{BlockId, Boundary, EdgeId, Facing, Facings, NodeId, VertexEdge};
+use enmm::model::tables::{BlockId, Boundary, EdgeId, Faces, Facing, NodeId, VertexEdge};
 use enmm::model::{ContactState, Quantity, Simulation};
 
 use crate::bonds::{BondState, bond_states};
@@ -49,21 +49,15 @@ pub const JOINT_QUANTITIES: [Quantity<JointPiece>; 4] = [
 
 /// The joints of a model as it was built: which edges of the boundary face each other.
 #[derive(Debug, Clone)]
-pub struct Joints {
-    /// Pieces, those of a face one after the other.
-    pieces: Vec<Facing>,
-    /// First of `of_edges` of each edge of the boundary, and their number at the end.
-    of_edge_start: Vec<u32>,
-    /// Pieces by edge of the boundary.
-    of_edges: Vec<u32>,
-    faces: usize,
-}
+pub struct Joints(Faces);
 
 /// Slip of a piece of joint in a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlipSince {
     /// Number of the joint trace.
     pub trace: usize,
+    /// Index of its law in the case.
+    pub law: u32,
     /// Distance (m) by which one face has moved along the other.
     pub slip: f64,
     /// Middle of the piece now (m).
@@ -88,30 +82,30 @@ struct Forces {
 impl Joints {
     /// Finds the faces that lie on each other.
     pub fn of(simulation: &Simulation) -> Self {
-        let boundary = &simulation.model().boundary;
-        let Facings { pieces, faces, .. } = Facings::of(boundary, &simulation.built().traces);
-        let mut joints = Self { pieces, of_edge_start: Vec::new(), of_edges: Vec::new(), faces };
-        joints.index(boundary.len());
-        joints
+        Self(Faces::of(&simulation.model().boundary, &simulation.built().traces))
     }
 
-    /// Lists the pieces of each edge.
-    fn index(&mut self, edges: usize) {
-        let mut on_edge: Vec<(u32, u32)> = Vec::with_capacity(2 * self.pieces.len());
-        for (k, piece) in self.pieces.iter().enumerate() {
-            on_edge.extend(piece.edges.map(|edge| (edge.number(), k as u32)));
-        }
-        on_edge.sort_unstable();
-        self.of_edge_start = vec![0; edges + 1];
-        on_edge.iter().for_each(|&(edge, _)| self.of_edge_start[edge as usize + 1] += 1);
-        (0..edges).for_each(|edge| self.of_edge_start[edge + 1] += self.of_edge_start[edge]);
-        self.of_edges = on_edge.into_iter().map(|(_, piece)| piece).collect();
+    /// Pieces of joint from the point of a node to the next node, of those that are on the first of their two faces.
+    pub fn along(&self, boundary: &Boundary, point: EdgeId) -> Vec<u32> {
+        let end = boundary.nodes.point[boundary.nodes.next[boundary.node_before[point]]];
+        let edges = std::iter::successors(Some(point), |&edge| Some(boundary.after(edge)).filter(|&next| next != end));
+        let Self(faces) = self;
+        let first = |edge: EdgeId| faces.on(edge).iter().filter(move |&&k| faces.pieces[k as usize].edges[0] == edge);
+        edges.flat_map(first).copied().collect()
     }
 
-    /// The pieces of an edge.
-    fn on(&self, edge: EdgeId) -> &[u32] {
-        let [start, end] = [0, 1].map(|next| self.of_edge_start[edge.index() + next] as usize);
-        &self.of_edges[start..end]
+    /// Opening and slip (m) of all pieces since the start, in their order; 0 of those of excavated blocks.
+    pub fn moved(&self, simulation: &Simulation) -> Vec<[f64; 2]> {
+        let (boundary, removed) = (&simulation.model().boundary, &simulation.state().removed);
+        let positions = simulation.positions();
+        let moved = |piece: &Facing| {
+            if piece.edges.into_iter().any(|edge| removed[boundary.block[edge]]) {
+                return [0.0; 2];
+            }
+            let JointPiece { opening, slip, .. } = seen(simulation, &positions, piece);
+            [opening, slip]
+        };
+        self.0.pieces.iter().map(moved).collect()
     }
 
     /// The joints now; those of excavated blocks are left out.
@@ -120,7 +114,7 @@ impl Joints {
         let boundary = &model.boundary;
         let positions = simulation.positions();
         let mut states = EdgeStates::new(boundary, &positions);
-        let mut forces = Forces { faces: vec![Load::default(); self.faces], touched: BTreeMap::new() };
+        let mut forces = Forces { faces: vec![Load::default(); self.0.count], touched: BTreeMap::new() };
         simulation.each_contact(|contact| {
             states.see(contact);
             self.add(boundary, contact, &mut forces);
@@ -131,14 +125,14 @@ impl Joints {
             let [a, b] = ends(boundary, &positions, piece.edges[0], piece.spans[0]);
             (b - a).norm()
         };
-        let mut closed = vec![[0.0; 2]; self.faces];
-        for piece in &self.pieces {
+        let mut closed = vec![[0.0; 2]; self.0.count];
+        for piece in &self.0.pieces {
             closed[piece.face][usize::from(state(piece) == ContactState::Open)] += length(piece);
         }
         let bonds = bond_states(simulation);
         let there = |edge: EdgeId| !removed[boundary.block[edge]];
-        let mut found: Vec<JointPiece> = Vec::with_capacity(self.pieces.len());
-        for piece in self.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)) {
+        let mut found: Vec<JointPiece> = Vec::with_capacity(self.0.pieces.len());
+        for piece in self.0.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)) {
             let mut seen = seen(simulation, &positions, piece);
             seen.state = state(piece);
             seen.bond = piece.edges.map(|edge| bonds[edge.index()]).into_iter().max().unwrap_or_default();
@@ -170,10 +164,12 @@ impl Joints {
                 moved(edge) * (1.0 - share) + moved(boundary.after(edge)) * share
             });
             let ends = ends(boundary, &positions, piece.edges[0], piece.spans[0]);
-            let trace = boundary.trace[piece.edges[0]]?.index();
-            Some(SlipSince { trace, slip: (own - other).perp(&outward(ends)).abs(), place: (ends[0] + ends[1]) * 0.5 })
+            let trace = boundary.trace[piece.edges[0]]?;
+            let law = state.law_switch[simulation.model().trace_law[trace]].number();
+            let slip = (own - other).perp(&outward(ends)).abs();
+            Some(SlipSince { trace: trace.index(), law, slip, place: (ends[0] + ends[1]) * 0.5 })
         };
-        self.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)).filter_map(slip).collect()
+        self.0.pieces.iter().filter(|piece| piece.edges.into_iter().all(there)).filter_map(slip).collect()
     }
 
     /// Adds the forces of a contact to its face, or else to those between edges that did not face each other.
@@ -188,7 +184,7 @@ impl Joints {
             load.normal -= history.normal_force;
             load.shear += history.shear_force;
         };
-        match self.face_between(boundary, history.edge, history.node) {
+        match self.0.between(boundary, history.edge, history.node) {
             Some((face, is_first)) => add(&mut forces.faces[face], if is_first { -1.0 } else { 1.0 }),
             None => {
                 let other = boundary.block[boundary.nodes.point[history.node]];
@@ -199,23 +195,6 @@ impl Joints {
                 touch.state = strongest([touch.state, history.state]);
             }
         }
-    }
-
-    /// The face of a contact between a node and an edge, and whether the edge is on the first block of the face.
-    fn face_between(&self, boundary: &Boundary, edge: EdgeId, node: NodeId) -> Option<(usize, bool)> {
-        let other = boundary.block[boundary.nodes.point[node]];
-        let facing = |edge: EdgeId, block| {
-            self.on(edge).iter().find_map(|&piece| {
-                let Facing { edges, face, .. } = self.pieces[piece as usize];
-                let is_first = edges[0] == edge;
-                (boundary.block[edges[usize::from(is_first)]] == block).then_some((face, is_first))
-            })
-        };
-        let beside = || {
-            let edges = boundary.edges_of_node(node).into_iter();
-            edges.filter_map(|own| facing(own, boundary.block[edge])).map(|(face, is_first)| (face, !is_first)).next()
-        };
-        facing(edge, other).or_else(beside)
     }
 }
 

@@ -16,7 +16,8 @@
 //! | sums at the end of a step | [`StepReport`] | [`REPORT_QUANTITIES`] |
 //! | sums for hosts | [`Totals`] | [`TOTALS`] |
 //! | ports | [`PortState`] | [`PORT_QUANTITIES`] |
-//! | monitors | [`MonitorState`] | [`MONITOR_QUANTITIES`] |
+//! | monitors | [`MonitorState`], [`stress::Stress`] | [`MONITOR_QUANTITIES`], [`MONITOR_STRESS_QUANTITIES`] |
+//! | monitors of joints | [`JointMonitorState`] | [`JOINT_MONITOR_QUANTITIES`] |
 //! | heads, rain and drains | [`InletState`] | [`INLET_QUANTITIES`] |
 //!
 //! Blocks, energies, ports, monitors, heads and sums for hosts are worked out by the engine, because the C library and
@@ -39,8 +40,9 @@ mod water;
 
 pub use enmm::cosimulation::{PORT_QUANTITIES, PortState, TOTALS, Totals};
 pub use enmm::model::{
-    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, INLET_QUANTITIES, InletState, Ledger,
-    MONITOR_QUANTITIES, MonitorState, Quantity, STRENGTH_QUANTITIES, StepReport,
+    BLOCK_QUANTITIES, BlockState, BoltCondition, ContactState, ENERGIES, INLET_QUANTITIES, InletState,
+    JOINT_MONITOR_QUANTITIES, JointMonitorState, Ledger, MONITOR_QUANTITIES, MONITOR_STRESS_QUANTITIES, MonitorState,
+    Quantity, STRENGTH_QUANTITIES, StepReport,
 };
 
 pub use bolts::{BOLT_QUANTITIES, BoltLine, bolts};

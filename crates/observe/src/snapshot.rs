@@ -47,7 +47,7 @@ pub struct Snapshot {
     pub time: f64,
     /// Manifold elements at their current position.
     pub elements: Polygons,
-    /// Displacement (m) of each point of `elements`.
+    /// Displacement (m) of each point of `elements`, from the end of the stage `output.since` on if the case names one.
     pub displacement: Vec<Vector>,
     /// Velocity (m/s) of each point of `elements`.
     pub velocity: Vec<Vector>,
@@ -103,7 +103,8 @@ impl Snapshot {
             for &p in covers.polygon(e) {
                 let displacement = model.sample(e, p, &state.displacement);
                 snapshot.elements.points.push(p + displacement);
-                snapshot.displacement.push(displacement);
+                let before = state.counted_from().map(|from| model.sample(e, p, from));
+                snapshot.displacement.push(before.map_or(displacement, |before| displacement - before));
                 snapshot.velocity.push(model.sample(e, p, &state.velocity));
             }
             snapshot.elements.start.push(snapshot.elements.points.len() as u32);
@@ -136,11 +137,11 @@ pub fn references(simulation: &Simulation) -> Vec<Point> {
 }
 
 /// Displacement (m) of each point of the elements of a snapshot since the covers had the displacements `started` (m).
-pub fn moved_since(simulation: &Simulation, snapshot: &Snapshot, started: &[Vector]) -> Vec<Vector> {
+pub fn moved_since(simulation: &Simulation, started: &[Vector]) -> Vec<Vector> {
     let model = simulation.model();
-    let of_element = |e| model.covers.polygon(e).iter().map(move |&p| model.sample(e, p, started));
-    let before = elements_there(simulation).flat_map(of_element);
-    snapshot.displacement.iter().zip(before).map(|(now, before)| now - before).collect()
+    let now = &simulation.state().displacement;
+    let moved = |e, p| model.sample(e, p, now) - model.sample(e, p, started);
+    elements_there(simulation).flat_map(|e| model.covers.polygon(e).iter().map(move |&p| moved(e, p))).collect()
 }
 
 /// Stress (Pa) out of the plane of an element with a stress xx, yy, xy: ν(xx + yy) − E·εp_zz in plane strain, and what

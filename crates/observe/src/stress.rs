@@ -1,9 +1,7 @@
 //! Numbers of the stress in the plane.
 
 use enmm::model::Quantity;
-
-/// Stress xx, yy, xy (Pa, tension positive) of an element.
-pub type Stress = [f64; 3];
+pub use enmm::model::stress::{Stress, max_shear, mean, principal};
 
 /// Numbers of a stress as outputs show them.
 pub const STRESS_QUANTITIES: [Quantity<Stress>; 7] = [
@@ -20,20 +18,4 @@ pub const STRESS_QUANTITIES: [Quantity<Stress>; 7] = [
 
 const fn stress(name: &'static str, text: &'static str, get: fn(&Stress) -> f64) -> Quantity<Stress> {
     Quantity::plain(name, "Pa", text, get)
-}
-
-/// Mean of the stresses xx and yy (Pa).
-pub fn mean(&[xx, yy, _]: &Stress) -> f64 {
-    0.5 * (xx + yy)
-}
-
-/// Greatest shear stress in the plane (Pa): √(((xx − yy)/2)² + xy²).
-pub fn max_shear(&[xx, yy, xy]: &Stress) -> f64 {
-    libm::hypot(0.5 * (xx - yy), xy)
-}
-
-/// The greatest and the least principal stress in the plane (Pa).
-pub fn principal(stress: &Stress) -> [f64; 2] {
-    let (mean, radius) = (mean(stress), max_shear(stress));
-    [mean + radius, mean - radius]
 }

@@ -194,6 +194,10 @@ fn rock_values(rock: &Rock) -> String {
         format!("σci {}, mi {mi}, GSI {gsi}, D {d}", si_text(rock.sigma_ci, "Pa"))
     }));
     values.extend(rock.tension.map(|tension| format!("t {}", si_text(tension, "Pa"))));
+    values.extend(rock.plane_of_weakness.map(|plane| {
+        let [angle, friction] = [plane.angle_deg.unwrap_or_default(), plane.friction_deg].map(number_text);
+        format!("weak at {angle}°: φ {friction}°, c {}", si_text(plane.cohesion, "Pa"))
+    }));
     values.join(", ")
 }
 

@@ -19,6 +19,7 @@ mod font;
 mod histogram;
 mod history;
 mod legend;
+mod lines;
 mod model;
 mod raster;
 #[cfg(feature = "searches")]
@@ -51,6 +52,7 @@ pub use field::{FieldNet, FieldSet};
 pub use flow::flow_picture;
 pub use histogram::{Fit, histogram_picture};
 pub use history::{Series, history_picture};
+pub use lines::{LineProfile, ProfileCurve, lines_picture};
 pub use model::{BoltMark, HeldRow, LoadMark, ModelAnnotations, PortMark, PortPlace, SetMark, model_picture};
 #[cfg(feature = "searches")]
 pub use reduction::{failure_picture, trials_picture};

@@ -8,7 +8,9 @@ use enmm_io::files::{at_path, is_running, read_result, unfinished_name};
 use same_file::Handle;
 use serde_json::Value;
 
+use crate::along::ALONG;
 use crate::flow::FLOW;
+use crate::lines::LINES;
 
 /// Name of the file by which a process holds a folder.
 const LOCK: &str = ".enmm.lock";
@@ -19,14 +21,16 @@ pub const STORE: &str = "ensemble.sqlite";
 /// Folder of frames in a folder of results.
 pub(crate) const FRAMES: &str = "frames";
 /// Names of results beside the pictures of stages.
-const FILES: [&str; 37] = [
+const FILES: [&str; 48] = [
     "blocks.csv",
+    ALONG,
     "bound.json",
     "checkpoint.enmm",
     "covers.png",
     "covers.svg",
     "deformed.png",
     "deformed.svg",
+    "earthquake.csv",
     "energy.png",
     "energy.svg",
     "ensemble.csv",
@@ -45,12 +49,21 @@ const FILES: [&str; 37] = [
     "history.csv",
     "history.png",
     "history.svg",
+    LINES,
     "model.png",
     "model.svg",
+    "record.png",
+    "record.svg",
     "report.html",
     "report_a4.html",
     "report_a4.pdf",
     "run.pvd",
+    "seismic.csv",
+    "seismic.png",
+    "seismic.svg",
+    "spectra.csv",
+    "spectra.png",
+    "spectra.svg",
     "summary.json",
     "sweep.csv",
     "sweep.json",

@@ -12,6 +12,8 @@ pub struct HistoryWriter {
     path: PathBuf,
     header: Vec<String>,
     csv: csv::Writer<File>,
+    /// The last row in the file.
+    last: Option<Vec<f64>>,
     /// Rows that are kept back.
     held: Option<Vec<Vec<f64>>>,
 }
@@ -54,7 +56,7 @@ impl HistoryWriter {
 
     fn begin(path: &Path, header: Vec<String>) -> io::Result<Self> {
         write_atomic(path, &encode([&header]).map_err(at_path(path))?)?;
-        Self::at_end(path, header)
+        Self::at_end(path, header, None)
     }
 
     fn shorten(path: &Path, header: Vec<String>, keep_until_time: f64) -> io::Result<Self> {
@@ -64,7 +66,8 @@ impl HistoryWriter {
         };
         let kept = rows_until(&text, &header, keep_until_time).map_err(at_path(path))?;
         write_atomic(path, &kept)?;
-        Self::at_end(path, header)
+        let last = last_row(&kept);
+        Self::at_end(path, header, last)
     }
 
     /// Appends one row: a value per column, the time (s) first, in digits that read back to the same number.
@@ -81,7 +84,15 @@ impl HistoryWriter {
             return Ok(());
         }
         let written = self.csv.write_record(values.iter().map(|value| format!("{value:?}"))).map_err(io::Error::from);
-        written.and_then(|()| self.csv.flush()).map_err(at_path(&self.path))
+        written.and_then(|()| self.csv.flush()).map_err(at_path(&self.path))?;
+        self.last = Some(values.to_vec());
+        Ok(())
+    }
+
+    /// The last row, written or kept back; none before the first.
+    pub fn last(&self) -> Option<&[f64]> {
+        let held = self.held.as_ref().and_then(|rows| rows.last());
+        held.or(self.last.as_ref()).map(Vec::as_slice)
     }
 
     /// Keeps back the rows that follow until they are released or discarded.
@@ -110,9 +121,9 @@ impl HistoryWriter {
         fs::metadata(&self.path).map(|_| ()).map_err(at_path(&self.path))
     }
 
-    fn at_end(path: &Path, header: Vec<String>) -> io::Result<Self> {
+    fn at_end(path: &Path, header: Vec<String>, last: Option<Vec<f64>>) -> io::Result<Self> {
         let file = OpenOptions::new().append(true).open(path).map_err(at_path(path))?;
-        Ok(Self { path: path.to_owned(), header, csv: csv::Writer::from_writer(file), held: None })
+        Ok(Self { path: path.to_owned(), header, csv: csv::Writer::from_writer(file), last, held: None })
     }
 }
 
@@ -148,6 +159,13 @@ fn rows_until(text: &str, header: &[String], until: f64) -> io::Result<Vec<u8>> 
         }
     }
     if kept.is_empty() { encode([header]) } else { encode(&kept) }
+}
+
+/// The last of rows as they are in the file; none below a header alone.
+fn last_row(kept: &[u8]) -> Option<Vec<f64>> {
+    let mut reader = csv::Reader::from_reader(kept);
+    let last = reader.records().last()?.ok()?;
+    last.iter().map(|text| text.parse().ok()).collect()
 }
 
 fn check_header(found: &csv::StringRecord, expected: &[String]) -> io::Result<()> {

@@ -3,14 +3,18 @@
 //! [`Recorder`] writes them for `enmm run`, [`Recording`] for a model that a host drives.
 #![forbid(unsafe_code)]
 
+pub mod along;
 pub mod blocks;
 mod breaks;
 pub mod changes;
+pub mod earthquake;
 pub mod film;
 mod flow;
 mod folder;
 pub mod history;
 mod input;
+mod lines;
+mod monitors;
 pub mod motion;
 mod progress;
 mod recorder;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use enmm::geometry::Vector;
 use enmm::model::case::{Case, Monitor};
 use enmm::model::{Farthest, Simulation, SlopeFailure};
-use enmm_observe::Joints;
+use enmm_observe::{Joints, SlipSince};
 
 /// Joints whose slip a record has: those that slipped farthest.
 const JOINTS: usize = 20;
@@ -59,6 +59,19 @@ pub struct PermanentMotion {
     pub joints: Vec<JointSlip>,
     /// Monitors, in the order of the case.
     pub monitors: Vec<MonitorMotion>,
+    /// Largest slip of the joints of each law that slipped, the largest first.
+    pub laws: Vec<LawSlip>,
+}
+
+/// Slip of the joints of a law in a stage.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LawSlip {
+    /// The law that they have at its end.
+    pub law: String,
+    /// Largest slip since the stage began (m).
+    pub slip: f64,
+    /// Where (m).
+    pub place: [f64; 2],
 }
 
 /// Slip of a joint, or of the joints of a set, in a stage.
@@ -87,30 +100,45 @@ impl PermanentMotion {
     /// That of the stage in progress, at whose start the covers had other displacements (m).
     pub fn of(simulation: &Simulation, joints: &Joints, began: &[Vector]) -> Self {
         let farthest = simulation.farthest_since(began);
+        let slips = joints.slips_since(simulation, began);
         Self {
             stage: simulation.stage().name.clone(),
             displacement: farthest.map_or(0.0, |farthest| farthest.displacement),
             block: farthest.map(|farthest| farthest.block),
             place: farthest.map(|farthest| farthest.place.into()),
-            joints: slips(simulation, joints, began),
+            joints: of_joints(simulation, &slips),
             monitors: monitors(simulation, began),
+            laws: of_laws(simulation, &slips),
         }
     }
 }
 
-fn slips(simulation: &Simulation, joints: &Joints, began: &[Vector]) -> Vec<JointSlip> {
-    let mut found: Vec<JointSlip> = Vec::new();
-    for slip in joints.slips_since(simulation, began) {
-        let joint = joint_name(simulation, slip.trace);
-        let own = JointSlip { joint, slip: slip.slip, place: slip.place.into() };
-        match found.iter_mut().find(|other| other.joint == own.joint) {
-            Some(other) if other.slip >= own.slip => {}
-            Some(other) => *other = own,
-            None => found.push(own),
+fn of_joints(simulation: &Simulation, slips: &[SlipSince]) -> Vec<JointSlip> {
+    let mut found = largest(slips, |slip| joint_name(simulation, slip.trace));
+    found.truncate(JOINTS);
+    let record = |(joint, slip): (String, SlipSince)| JointSlip { joint, slip: slip.slip, place: slip.place.into() };
+    found.into_iter().map(record).collect()
+}
+
+fn of_laws(simulation: &Simulation, slips: &[SlipSince]) -> Vec<LawSlip> {
+    let law = |slip: &SlipSince| simulation.case().joint_laws.keys().nth(slip.law as usize).cloned();
+    let found = largest(slips, |slip| law(slip).unwrap_or_default());
+    let record = |(law, slip): (String, SlipSince)| LawSlip { law, slip: slip.slip, place: slip.place.into() };
+    found.into_iter().map(record).collect()
+}
+
+/// The largest slip of each name, the largest first.
+fn largest(slips: &[SlipSince], name: impl Fn(&SlipSince) -> String) -> Vec<(String, SlipSince)> {
+    let mut found: Vec<(String, SlipSince)> = Vec::new();
+    for slip in slips {
+        let own = name(slip);
+        match found.iter_mut().find(|(other, _)| *other == own) {
+            Some((_, other)) if other.slip >= slip.slip => {}
+            Some((_, other)) => *other = *slip,
+            None => found.push((own, *slip)),
         }
     }
-    found.sort_by(|a, b| b.slip.total_cmp(&a.slip).then(a.joint.cmp(&b.joint)));
-    found.truncate(JOINTS);
+    found.sort_by(|(a, of_a), (b, of_b)| of_b.slip.total_cmp(&of_a.slip).then(a.cmp(b)));
     found
 }
 
@@ -126,10 +154,11 @@ fn joint_name(simulation: &Simulation, trace: usize) -> String {
 }
 
 fn monitors(simulation: &Simulation, began: &[Vector]) -> Vec<MonitorMotion> {
-    let places = &simulation.built().monitors;
+    let places = &simulation.built().monitors.points;
     let of = |(k, monitor): (usize, &Monitor)| {
         let (element, point) = places[k];
-        let since = simulation.monitor(k).0 - simulation.model().sample(element, point, began);
+        let sample = |field: &[Vector]| simulation.model().sample(element, point, field);
+        let since = sample(&simulation.state().displacement) - sample(began);
         MonitorMotion { name: monitor.name.clone(), place: monitor.point, displacement: since.into() }
     };
     simulation.case().monitors.iter().enumerate().map(of).collect()

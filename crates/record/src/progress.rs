@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::lines::LineRecord;
 use crate::motion::PermanentMotion;
 use crate::summary::StageRecord;
 use enmm::geometry::Vector;
@@ -26,6 +27,8 @@ pub struct Progress {
     pub started: Vec<Vector>,
     /// Where the dynamic stages that are over have left the rock.
     pub permanent: Vec<PermanentMotion>,
+    /// Lines at the ends of the stages that are over.
+    pub lines: Vec<LineRecord>,
 }
 
 /// Numbers of the reports up to an instant.
@@ -58,7 +61,7 @@ impl Progress {
         };
         let started = if state.stage_displacement.is_empty() { state.displacement.clone() } else { Vec::new() };
         let done = stages.map(|stage| StageRecord::unseen(simulation, state, stage)).collect();
-        Self { done, reports, started, permanent: Vec::new() }
+        Self { done, reports, started, permanent: Vec::new(), lines: Vec::new() }
     }
 
     /// Whether it can be that of a state.
@@ -66,12 +69,15 @@ impl Progress {
     /// # Errors
     /// The first number that cannot.
     fn check(&self, state: &State) -> Result<(), Unfit> {
-        let Self { done, reports, started, permanent } = self;
+        let Self { done, reports, started, permanent, lines } = self;
         let Reports { unsettled_before, potential_start, row_sweeps, penetration_max, unbalanced, ledger } = reports;
         let stages = u64::from(state.stage);
         fit::between("the number of records of stages", done.len() as f64, stages as f64, stages as f64 + 1.0)?;
         fit::at_most("unsettled_before", *unsettled_before, state.counters.unsettled)?;
         fit::at_most("the number of records of motions", permanent.len() as u64, done.len() as u64)?;
+        if let Some(line) = lines.iter().max_by_key(|line| line.number) {
+            fit::at_most("the number of the stage of a line", u64::from(line.number), stages + 1)?;
+        }
         fit::number("potential_start", potential_start.unwrap_or_default(), fit::FORCE)?;
         fit::at_most("row_sweeps[0]", row_sweeps[0], state.counters.sweeps)?;
         fit::at_most("row_sweeps[1]", row_sweeps[1], state.counters.substeps)?;

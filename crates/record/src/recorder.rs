@@ -12,16 +12,19 @@ use enmm_io::{LoadedCase, checkpoint};
 use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note};
 
+use crate::along::{ALONG, has_bonds, write_along};
 use crate::blocks::write_blocks;
 use crate::breaks::SectionRecord;
+use crate::earthquake::{self, EarthquakeRecord};
 use crate::film::{Film, Opening, numbers};
 use crate::flow::{FLOW, FlowRecord, write_flow};
 use crate::history::HistoryWriter;
 use crate::input::input_record;
+use crate::lines::{LINES, LineRecord, write_lines};
 use crate::motion::{FailureOfStage, PermanentMotion};
 use crate::progress::{CHECKPOINT, Progress, Saved};
 use crate::results;
-use crate::rows::{self, Plan};
+use crate::rows::{self, Plan, Readings};
 use crate::summary::{CoupledRecord, FAILED, RunRecord, RunStatus, StageRecord, Summary, WallSeconds};
 use crate::verdict::Verdict;
 use crate::vtu::{Part, PvdWriter, Structures};
@@ -60,6 +63,7 @@ pub struct Closing<'a> {
 #[derive(Debug)]
 struct RowStart {
     monitors: Vec<(Vector, Vector)>,
+    readings: Readings,
     /// Lengths of the step before and of this one (s).
     dt: [f64; 2],
     sweeps_mean: f64,
@@ -230,6 +234,14 @@ impl Recorder {
         self.film.frame(simulation)
     }
 
+    /// Appends a frame to the film in any case with its elements, as at the end of a stage.
+    ///
+    /// # Errors
+    /// As [`Recorder::open`].
+    pub fn push_end_of_film(&mut self, simulation: &Simulation) -> io::Result<()> {
+        self.film.frame_at(simulation, simulation.time())
+    }
+
     /// Looks at the model before a step whose report becomes a row.
     pub fn before_row(&mut self, simulation: &Simulation) {
         self.row = Some(self.row_start(simulation));
@@ -266,6 +278,7 @@ impl Recorder {
         let state = simulation.state();
         RowStart {
             monitors: rows::monitors(simulation),
+            readings: Readings::of(simulation),
             dt: [state.dt_last, state.rest_of_step(simulation.model())],
             sweeps_mean: self.sweeps_mean(simulation),
         }
@@ -296,7 +309,11 @@ impl Recorder {
         let after = rows::monitors(simulation);
         let tensions = rows::tensions(simulation);
         let stage = simulation.state().stage;
-        let row = rows::row(stage, report, &start.monitors, &after, start.dt, start.sweeps_mean, &tensions);
+        let beside = (start.sweeps_mean, &start.readings);
+        let mut row = rows::row(stage, report, &start.monitors, &after, start.dt, beside, &tensions);
+        let columns = rows::columns(simulation.case());
+        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+        row.extend(earthquake::accelerations(simulation, &names, self.history.last(), &row));
         self.history.row(&row)?;
         self.film.row(&row)
     }
@@ -311,14 +328,15 @@ impl Recorder {
             simulation.drop_buffers();
         }
         self.push_frame(simulation)?;
-        self.push_film(simulation)?;
+        self.push_end_of_film(simulation)?;
         self.draw_stage(simulation)?;
         self.row_now(simulation, now)
     }
 
     /// Draws the end of a stage: those pictures that the case requests.
     pub(crate) fn draw_stage(&self, simulation: &Simulation) -> io::Result<()> {
-        results::draw_stage(simulation, &self.joints, self.began(simulation), &self.directory)
+        let before = (self.began(simulation), &self.progress.lines[..]);
+        results::draw_stage(simulation, &self.joints, before, &self.directory)
     }
 
     /// The row of an instant; the step that it needs is taken back, to the state `now`. Returns whether a static stage
@@ -384,6 +402,7 @@ impl Recorder {
             let motion = PermanentMotion::of(simulation, &self.joints, self.began(simulation));
             self.progress.permanent.push(motion);
         }
+        self.progress.lines.extend(LineRecord::all(simulation));
         // The table of stages on the page is narrow, and the verdict above it has the rest.
         let outcome = if record.failure.is_some() { FAILED.to_owned() } else { record.outcome() };
         self.note_stage(simulation, Some(simulation.time()), &outcome)?;
@@ -410,12 +429,23 @@ impl Recorder {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
         write_blocks(&self.directory.join("blocks.csv"), simulation)?;
+        if has_bonds(simulation) {
+            write_along(&self.directory.join(ALONG), simulation)?;
+        }
         let flows = FlowRecord::all(simulation);
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;
         }
+        let mut lines = self.progress.lines.clone();
+        if self.progress.done.len() <= simulation.state().stage as usize {
+            lines.extend(LineRecord::all(simulation));
+        }
+        if !lines.is_empty() {
+            write_lines(&self.directory.join(LINES), &lines)?;
+        }
+        let earthquakes = self.close_earthquakes(simulation)?;
         if status != RunStatus::Interrupted {
-            results::draw_end(simulation, &self.directory)?;
+            results::draw_end(simulation, &earthquakes, &self.directory)?;
         }
         let mut stages = self.progress.done.clone();
         if stages.len() <= simulation.state().stage as usize {
@@ -442,6 +472,8 @@ impl Recorder {
             coupled,
             stages,
             permanent: self.progress.permanent.clone(),
+            lines,
+            earthquakes,
             failed: verdict.failed,
             verdict: verdict.text,
             ledger: &ledger,
@@ -453,6 +485,17 @@ impl Recorder {
         let summary = Summary::new(simulation, record);
         summary.write(&self.directory.join("summary.json"))?;
         Ok(summary)
+    }
+
+    /// Writes the tables of the earthquakes, and warns of histories that are too coarse for them.
+    fn close_earthquakes(&mut self, simulation: &Simulation) -> io::Result<Vec<EarthquakeRecord>> {
+        let earthquakes = EarthquakeRecord::all(simulation, &self.directory.join("history.csv"))?;
+        if !earthquakes.is_empty() {
+            earthquake::write(&self.directory, &earthquakes)?;
+        }
+        let doubts: Vec<String> = earthquakes.iter().filter_map(EarthquakeRecord::doubt).collect();
+        doubts.into_iter().try_for_each(|text| self.warn(simulation, text))?;
+        Ok(earthquakes)
     }
 
     fn wall(&self, simulation: &Simulation) -> WallSeconds {
@@ -514,6 +557,7 @@ fn film(
         film: directory.join(FILM),
         axis: Axis::time(),
         numbers: numbers(simulation),
+        elements: true,
         columns: &columns,
     };
     let mut film = Film::open(directory, loaded, simulation, opening, until)?;

@@ -251,7 +251,11 @@ impl Recording {
             self.last.frame = time;
         }
         if (all || self.recorder.plan().film_due(step)) && is_later(simulation, self.last.film) {
-            self.recorder.push_film(simulation)?;
+            if all {
+                self.recorder.push_end_of_film(simulation)?;
+            } else {
+                self.recorder.push_film(simulation)?;
+            }
             self.last.film = time;
         }
         Ok(())
@@ -353,6 +357,7 @@ impl Recording {
         progress.done.truncate(state.stage as usize);
         let dynamic = progress.done.iter().filter(|stage| stage.kind == StageKind::Dynamic).count();
         progress.permanent.truncate(dynamic);
+        progress.lines.retain(|line| line.number <= state.stage);
         let started = self.starts.iter().find(|(stage, ..)| *stage == state.stage);
         progress.started = match started {
             Some((_, breaks, started)) => simulation.after_breaks(*breaks, started),

@@ -13,18 +13,20 @@ use enmm_observe::{
 };
 use enmm_picture::{
     StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture, history_picture,
-    joint_stress_pictures, joints_picture, mean_stress_contours, model_annotations, model_picture, number_text,
-    stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
+    joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations, model_picture,
+    number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
 };
 use enmm_report::FILM;
 
+use crate::earthquake::{self, EarthquakeRecord};
 use crate::flow::FLOW;
 use crate::folder::{FRAMES, make_frames};
+use crate::lines::{LINES, LineRecord, profiles};
 use crate::rows::{self, Histories};
 use crate::vtu::PARTS;
 
 /// Kinds of pictures of the end of a stage, and with what the rest of their names begins.
-const STAGE_PICTURES: [(PictureKind, &[&str]); 9] = [
+const STAGE_PICTURES: [(PictureKind, &[&str]); 10] = [
     (PictureKind::Displacement, &["displacement"]),
     (PictureKind::Joints, &["joints"]),
     (PictureKind::JointStress, &["normal_stress", "shear_stress"]),
@@ -34,6 +36,7 @@ const STAGE_PICTURES: [(PictureKind, &[&str]); 9] = [
     (PictureKind::MeanStressContours, &["mean_stress_contours"]),
     (PictureKind::Strength, &["strength"]),
     (PictureKind::Flow, &["flow"]),
+    (PictureKind::Lines, &["lines"]),
 ];
 
 /// Files by which a directory is known as that of a run.
@@ -44,19 +47,19 @@ pub fn has_run(directory: &Path) -> bool {
     TRACES.iter().any(|name| directory.join(name).exists())
 }
 
-/// Removes the frames, the pictures of stages and the flow of an earlier run in the directory.
+/// Removes the frames, the pictures of stages, the flow and the lines of an earlier run in the directory.
 pub fn clear(directory: &Path) -> io::Result<()> {
     stage_pictures(directory)?.iter().try_for_each(|picture| fs::remove_file(picture).map_err(at_path(picture)))?;
-    remove_flow(directory)?;
+    [FLOW, LINES].iter().try_for_each(|name| remove_table(&directory.join(name)))?;
+    earthquake::clear(directory)?;
     make_frames(directory)?;
     frames(directory)?.iter().try_for_each(|frame| fs::remove_file(frame).map_err(at_path(frame)))
 }
 
-/// Removes the flow in joints of an earlier run, which a case without such water would leave.
-fn remove_flow(directory: &Path) -> io::Result<()> {
-    let path = directory.join(FLOW);
-    match fs::remove_file(&path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(at_path(&path)(error)),
+/// Removes a table of an earlier run, which a case without flow in joints or without lines would leave.
+fn remove_table(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(at_path(path)(error)),
         _ => Ok(()),
     }
 }
@@ -161,12 +164,19 @@ pub fn draw_checked(simulation: &Simulation, directory: &Path) -> io::Result<()>
     draw_model(simulation, directory)
 }
 
-/// Draws the slope as it is now, and the histories.
-pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
+/// Draws the slope as it is now, the histories and the spectra of earthquakes.
+pub fn draw_end(simulation: &Simulation, earthquakes: &[EarthquakeRecord], directory: &Path) -> io::Result<()> {
     let case = simulation.case();
+    if case.output.pictures.include(PictureKind::Spectra) && !earthquakes.is_empty() {
+        earthquake::draw(directory, &case.title, earthquakes)?;
+    }
     if case.output.pictures.include(PictureKind::Deformed) {
         let snapshot = Snapshot::of(simulation);
-        displacement_picture(&snapshot, &case.title, &outline(case)).write(directory, "deformed")?;
+        let title = match &case.output.since {
+            Some(since) => format!("{}: since the end of {since}", case.title),
+            None => case.title.clone(),
+        };
+        displacement_picture(&snapshot, &title, &outline(case)).write(directory, "deformed")?;
     }
     let kinds = [PictureKind::History, PictureKind::Energy].map(|kind| case.output.pictures.include(kind));
     if kinds.contains(&true) {
@@ -180,8 +190,13 @@ pub fn draw_end(simulation: &Simulation, directory: &Path) -> io::Result<()> {
 }
 
 /// Draws the slope at the end of a stage: those pictures that the case requests. `started` are the displacements of the
-/// covers (m) at the start of the stage.
-pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], directory: &Path) -> io::Result<()> {
+/// covers (m) at the start of the stage, `lines` are those at the ends of the stages before.
+pub fn draw_stage(
+    simulation: &Simulation,
+    joints: &Joints,
+    (started, lines): (&[Vector], &[LineRecord]),
+    directory: &Path,
+) -> io::Result<()> {
     let pictures = &simulation.case().output.pictures;
     if !STAGE_PICTURES.iter().any(|(kind, _)| pictures.include(*kind)) {
         return Ok(());
@@ -201,10 +216,10 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
         let pictures = match kind {
             PictureKind::Displacement | PictureKind::DisplacementContours if started.is_empty() => Vec::new(),
             PictureKind::Displacement => {
-                vec![stage_displacement_picture(&stage, &moved_since(simulation, &snapshot, started))]
+                vec![stage_displacement_picture(&stage, &moved_since(simulation, started))]
             }
             PictureKind::DisplacementContours => {
-                vec![displacement_contours(&stage, &moved_since(simulation, &snapshot, started))]
+                vec![displacement_contours(&stage, &moved_since(simulation, started))]
             }
             PictureKind::MeanStressContours => vec![mean_stress_contours(&stage, &references(simulation))],
             PictureKind::Strength if simulation.model().breaking.is_none() => Vec::new(),
@@ -215,6 +230,11 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
                 let flow = WaterInJoints::of(simulation);
                 flow.map(|flow| flow_picture(&stage, &flow)).into_iter().collect()
             }
+            PictureKind::Lines if simulation.case().lines.is_empty() => Vec::new(),
+            PictureKind::Lines => {
+                let lines = [lines, &LineRecord::all(simulation)].concat();
+                vec![lines_picture(stage.title, &stage.caption, &profiles(&lines))]
+            }
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
             PictureKind::Stress => vec![stress_picture(&stage)],
@@ -223,6 +243,7 @@ pub fn draw_stage(simulation: &Simulation, joints: &Joints, started: &[Vector], 
             | PictureKind::Deformed
             | PictureKind::History
             | PictureKind::Energy
+            | PictureKind::Spectra
             | PictureKind::Covers => Vec::new(),
         };
         for (picture, name) in pictures.iter().zip(names) {

@@ -6,9 +6,13 @@ use std::path::Path;
 use enmm::geometry::Vector;
 use enmm::model::case::{Axis, StageKind};
 use enmm::model::settle::REST_STEPS;
-use enmm::model::{Case, Simulation, StepReport};
+use enmm::model::{
+    Case, JOINT_MONITOR_QUANTITIES, JointMonitorState, MONITOR_STRESS_QUANTITIES, Simulation, StepReport, Stress,
+};
 use enmm_observe::{ENERGIES, MONITOR_QUANTITIES, REPORT_QUANTITIES, bolts};
 use enmm_picture::{Series, StageStart};
+
+use crate::earthquake;
 
 /// Rows of a stage that names no interval: of a dynamic one, and of a static one each time that its
 /// number of steps doubles.
@@ -20,12 +24,15 @@ const FILM_FRAMES: [f64; 3] = [60.0, 200.0, 6.0];
 
 /// More bolts than this have one column, with the largest tension of all.
 const BOLTS_MAX: usize = 50;
+/// Share of a step by which a time that is one of whole steps may fall short of it, by rounding.
+const WHOLE: f64 = 1e-6;
 /// End of the name of the column of a bolt.
 const TENSION: &str = "_tension";
 /// Quantity of the energies in their picture.
 const ENERGY: &str = "energy";
-/// Quantity of the velocities of monitors in the picture of the histories.
+/// Quantities of monitors in the picture of the histories that dynamic stages alone show.
 const VELOCITY: &str = "velocity";
+const ACCELERATION: &str = "acceleration";
 /// Part of the largest energy below which an energy is left out of the picture.
 const SMALL: f64 = 0.01;
 
@@ -79,7 +86,7 @@ impl Plan {
     pub fn of(simulation: &Simulation) -> Self {
         let output = &simulation.case().output;
         Self {
-            row: Due::of(simulation, output.history_interval, ROWS),
+            row: Due::of(simulation, row_interval(simulation), ROWS),
             frame: Due::of(simulation, output.frame_interval, FRAMES),
             film: film_due(simulation, output.frame_interval),
             checkpoint: output.checkpoint_interval.map(|interval| simulation.steps_in(interval)),
@@ -112,6 +119,19 @@ impl Plan {
     }
 }
 
+/// Time (s) between rows: that of the case, else a short one while a ground motion shakes the slope.
+fn row_interval(simulation: &Simulation) -> Option<f64> {
+    let case = simulation.case();
+    let is_shaken = case.is_shaken(simulation.state().stage as usize);
+    // Whole steps, and not more of them than the time has.
+    let steps = |time: f64| (time / simulation.model().dt + WHOLE).floor().max(1.0);
+    let shortest = || {
+        let interval = (simulation.stage().duration / ROWS[0]).min(earthquake::ROW_INTERVAL);
+        simulation.model().dt * steps(interval)
+    };
+    case.output.history_interval.or_else(|| is_shaken.then(shortest))
+}
+
 /// When frames of the film are due: with those of the results, unless a film would be too coarse or too long by it.
 fn film_due(simulation: &Simulation, frames: Option<f64>) -> Due {
     let [least, most, of_doubling] = FILM_FRAMES;
@@ -126,11 +146,18 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
     let mut columns = vec![("time".to_owned(), "s"), ("stage".to_owned(), "")];
     for monitor in &case.monitors {
         columns.extend(MONITOR_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
+        if monitor.stress {
+            columns.extend(MONITOR_STRESS_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
+        }
+    }
+    for monitor in &case.joint_monitors {
+        columns.extend(JOINT_MONITOR_QUANTITIES.map(|q| (format!("{}_{}", monitor.name, q.column), q.unit)));
     }
     columns.extend(ENERGIES.map(|energy| (energy.column.to_owned(), energy.unit)));
     columns.extend(REPORT_QUANTITIES.map(|quantity| (quantity.column.to_owned(), quantity.unit)));
     columns.push(("sweeps_mean".to_owned(), ""));
     columns.extend(bolt_columns(case).into_iter().map(|name| (name, "N")));
+    columns.extend(earthquake::columns(case));
     columns
 }
 
@@ -162,22 +189,42 @@ pub fn monitors(simulation: &Simulation) -> Vec<(Vector, Vector)> {
     (0..simulation.case().monitors.len()).map(|k| simulation.monitor(k)).collect()
 }
 
+/// Numbers of monitors of stress and of joints at the time of a row.
+#[derive(Debug)]
+pub struct Readings {
+    stresses: Vec<Option<Stress>>,
+    joints: Vec<JointMonitorState>,
+}
+
+impl Readings {
+    /// Those of now.
+    pub fn of(simulation: &Simulation) -> Self {
+        let monitors = 0..simulation.case().monitors.len();
+        let stresses = monitors.map(|k| simulation.monitor_stress(k)).collect();
+        Self { stresses, joints: simulation.joint_monitors().to_vec() }
+    }
+}
+
 /// One row: `before` are the monitors at the start of the step, `after` at its end, `dt` its length and that of the
-/// step before (s), `tensions` those of the bolts at its end. Velocities, which live halfway between, are brought to
-/// the time of the row.
+/// step before (s), `readings` those of stress and joints at its start, `tensions` those of the bolts at its end.
+/// Velocities, which live halfway between, are brought to the time of the row.
 pub fn row(
     stage: u32,
     report: &StepReport,
     before: &[(Vector, Vector)],
     after: &[(Vector, Vector)],
     [dt_before, dt]: [f64; 2],
-    sweeps_mean: f64,
+    (sweeps_mean, readings): (f64, &Readings),
     tensions: &[f64],
 ) -> Vec<f64> {
     let mut row = vec![report.time, f64::from(stage + 1)];
-    for ((u, v), (_, v_after)) in before.iter().zip(after) {
+    for (((u, v), (_, v_after)), stress) in before.iter().zip(after).zip(&readings.stresses) {
         let velocity = (v * dt + v_after * dt_before) / (dt + dt_before);
         row.extend(MONITOR_QUANTITIES.iter().map(|quantity| (quantity.get)(&(*u, velocity))));
+        row.extend(stress.iter().flat_map(|stress| MONITOR_STRESS_QUANTITIES.map(|quantity| (quantity.get)(stress))));
+    }
+    for joint in &readings.joints {
+        row.extend(JOINT_MONITOR_QUANTITIES.iter().map(|quantity| (quantity.get)(joint)));
     }
     row.extend(ENERGIES.iter().map(|energy| (energy.get)(&report.ledger)));
     row.extend(REPORT_QUANTITIES.iter().map(|quantity| (quantity.get)(report)));
@@ -224,18 +271,23 @@ pub fn histories(path: &Path, case: &Case) -> io::Result<Histories> {
         last = number(0);
         let is_static = stages.last().is_none_or(|stage| stage.is_static);
         for (k, series) in &mut series {
-            let hidden = is_static && series.quantity == VELOCITY;
+            let hidden = is_static && moves(series);
             series.points.push((number(0), if hidden { f64::NAN } else { number(*k) }));
         }
     }
     let (energies, mut series): (Vec<_>, Vec<_>) =
         series.into_iter().map(|(_, series)| series).partition(|series| series.quantity == ENERGY);
-    series.retain(|series| series.quantity != VELOCITY || series.points.iter().any(|point| point.1.is_finite()));
+    series.retain(|series| !moves(series) || series.points.iter().any(|point| point.1.is_finite()));
     series.extend(base_motions(case, &stages, last));
     let size = |series: &Series| series.points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     let least = SMALL * energies.iter().map(size).fold(0.0, f64::max);
     let energies = energies.into_iter().filter(|series| size(series) > 0.0 && size(series) >= least).collect();
     Ok(Histories { series, energies, stages })
+}
+
+/// Whether a series has a meaning in dynamic stages alone.
+fn moves(series: &Series) -> bool {
+    [VELOCITY, ACCELERATION].contains(&series.quantity.as_str())
 }
 
 /// The motion of the base from the stage on with which it begins, in dynamic stages.
@@ -281,13 +333,17 @@ fn waves(case: &Case, stages: &[StageStart], end: f64) -> Vec<Series> {
 fn pictured_series(header: &str, energies: &[&str]) -> Option<Series> {
     let (column, unit) = header.strip_suffix(']')?.rsplit_once(" [")?;
     let of = |name: String, quantity: &str| {
-        Some(Series { name, quantity: quantity.to_owned(), unit: unit.to_owned(), points: Vec::new() })
+        Some(Series { name, quantity: quantity.to_owned(), unit: unit.replace("s2", "s²"), points: Vec::new() })
     };
     match column.rsplit_once('_') {
         Some((monitor, "ux")) if unit == "m" => of(format!("{monitor} x"), "displacement"),
         Some((monitor, "uy")) if unit == "m" => of(format!("{monitor} y"), "displacement"),
         Some((monitor, "vx")) if unit == "m/s" => of(format!("{monitor} x"), VELOCITY),
         Some((monitor, "vy")) if unit == "m/s" => of(format!("{monitor} y"), VELOCITY),
+        Some((gauge, "opening")) if unit == "m" => of(gauge.to_owned(), "opening of joints"),
+        Some((gauge, "slip")) if unit == "m" => of(gauge.to_owned(), "slip of joints"),
+        Some((monitor, "ax")) if unit == "m/s2" => of(format!("{monitor} x"), ACCELERATION),
+        Some((monitor, "ay")) if unit == "m/s2" => of(format!("{monitor} y"), ACCELERATION),
         Some((bolt, "tension")) if unit == "N" => of(bolt.replace('_', " "), "tension of a bar"),
         _ if unit == "J/m" && energies.contains(&column) => of(column.replace('_', " "), ENERGY),
         _ => None,

@@ -15,7 +15,10 @@ use enmm_observe::{BoltCondition, BoltLine, ENERGIES, bolts};
 
 use crate::breaks::{BreakRecord, SectionRecord};
 use crate::changes::{CrumbRecord, TraceEndRecord};
+use crate::earthquake::EarthquakeRecord;
 use crate::flow::{FlowRecord, PartedRecord};
+use crate::lines::LineRecord;
+use crate::monitors::Measured;
 use crate::motion::{FailureOfStage, PermanentMotion};
 
 /// How a stage ended in which the slope has failed.
@@ -67,6 +70,12 @@ pub struct Summary {
     /// Where each dynamic stage has left the rock.
     #[serde(skip_serializing_if = "<[PermanentMotion]>::is_empty")]
     pub permanent: Vec<PermanentMotion>,
+    /// Monitors at the end, and lines.
+    #[serde(flatten)]
+    pub measured: Measured,
+    /// Measures of ground motions and of the monitors that they shake.
+    #[serde(skip_serializing_if = "<[EarthquakeRecord]>::is_empty")]
+    pub earthquakes: Vec<EarthquakeRecord>,
     /// Simulated time (s).
     pub time: f64,
     /// Internal steps.
@@ -291,6 +300,9 @@ pub struct BoltRecord {
     pub utilisation: Option<f64>,
     /// Lasting elongation of the bar (m).
     pub plastic_elongation: f64,
+    /// Largest slip of the bar along the rock at both ends of the free length (m); none for a bar without a bond.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<f64>,
     /// Its condition.
     pub state: BoltCondition,
 }
@@ -309,6 +321,7 @@ impl BoltRecord {
                 support: case.support,
                 utilisation: case.yield_force.map(|yields| line.force * case.spacing / yields),
                 plastic_elongation: line.plastic_elongation,
+                slip: case.bond.map(|_| line.slip[0].abs().max(line.slip[1].abs())),
                 state: line.condition,
             }
         };
@@ -327,6 +340,14 @@ pub struct StepSizes {
     pub internal: f64,
     /// Stability limit.
     pub critical: f64,
+}
+
+impl StepSizes {
+    /// Those of a model.
+    fn of(simulation: &Simulation) -> Self {
+        let (model, counters) = (simulation.model(), &simulation.state().counters);
+        Self { min: counters.dt_min, max: counters.dt_max, internal: model.dt, critical: model.critical_dt }
+    }
 }
 
 /// The open–close iteration over a whole run.
@@ -407,6 +428,9 @@ pub(crate) struct RunRecord<'a> {
     pub coupled: Option<CoupledRecord>,
     pub stages: Vec<StageRecord>,
     pub permanent: Vec<PermanentMotion>,
+    pub lines: Vec<LineRecord>,
+    /// Measures of ground motions.
+    pub earthquakes: Vec<EarthquakeRecord>,
     pub failed: bool,
     pub verdict: String,
     pub ledger: &'a Ledger,
@@ -418,8 +442,7 @@ pub(crate) struct RunRecord<'a> {
 
 impl Summary {
     pub(crate) fn new(simulation: &Simulation, record: RunRecord) -> Self {
-        let (model, state) = (simulation.model(), simulation.state());
-        let (counters, internal) = (&state.counters, model.dt);
+        let (model, state, counters) = (simulation.model(), simulation.state(), &simulation.state().counters);
         Self {
             title: simulation.case().title.clone(),
             version: engine_version().to_owned(),
@@ -434,9 +457,11 @@ impl Summary {
             model: ModelCounts::of(simulation),
             stages: record.stages,
             permanent: record.permanent,
+            measured: Measured::of(simulation, record.lines),
+            earthquakes: record.earthquakes,
             time: simulation.time(),
             steps: state.step,
-            dt: StepSizes { min: counters.dt_min, max: counters.dt_max, internal, critical: model.critical_dt },
+            dt: StepSizes::of(simulation),
             open_close: OpenCloseRecord {
                 mean: counters.sweeps as f64 / counters.substeps.max(1) as f64,
                 max: counters.sweeps_max,

@@ -41,6 +41,31 @@ fn a_row_of_the_wrong_length_is_refused_and_not_written() {
     assert_eq!(text(&path), HEADER);
 }
 
+/// Rows that follow may need the one before, also after a resumption and after rows that were taken back.
+#[test]
+fn the_last_row_is_known() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("history.csv");
+    let mut history = HistoryWriter::new(&path, &COLUMNS).unwrap();
+    assert_eq!(history.last(), None);
+    for time in [0.1, 0.2, 1.0 / 3.0] {
+        history.row(&[time, 2.0 * time, 1.0]).unwrap();
+    }
+    assert_eq!(history.last(), Some(&[1.0 / 3.0, 2.0 / 3.0, 1.0][..]));
+    history.hold();
+    history.row(&[0.4, 7.0, 1.0]).unwrap();
+    assert_eq!(history.last(), Some(&[0.4, 7.0, 1.0][..]));
+    history.discard();
+    assert_eq!(history.last(), Some(&[1.0 / 3.0, 2.0 / 3.0, 1.0][..]));
+    history.cut(0.25).unwrap();
+    assert_eq!(history.last(), Some(&[0.2, 0.4, 1.0][..]));
+    drop(history);
+    let mut resumed = HistoryWriter::open_for_append(&path, &COLUMNS, 0.15).unwrap();
+    assert_eq!(resumed.last(), Some(&[0.1, 0.2, 1.0][..]));
+    resumed.cut(0.0).unwrap();
+    assert_eq!(resumed.last(), None);
+}
+
 #[test]
 fn a_resumed_history_continues_at_its_checkpoint() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,5 +1,6 @@
 //! Tests of files of results.
 
+mod along;
 mod history;
 #[path = "../../picture/tests/sample.rs"]
 mod sample;

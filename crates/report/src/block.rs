@@ -4,6 +4,7 @@
 //! corner only what the rigid motion leaves, in whole quanta: mostly zeros, which take no room.
 
 use crate::data::{Frame, Head, Outline};
+use crate::elements::Meshes;
 use crate::error::{FilmError, expect, finite};
 use crate::number::{Width, push_integer, push_planes};
 use crate::structures::push_structures;
@@ -34,13 +35,27 @@ pub struct Shape {
     arms: Vec<[f64; 2]>,
     /// Names of the numbers of a block.
     numbers: Vec<String>,
+    /// Elements of the blocks, if the film has them.
+    pub mesh: Option<Meshes>,
+}
+
+/// Bytes of a frame, and the numbers of all blocks as a reader will have them.
+pub type Framed = (Vec<u8>, Vec<Vec<f32>>);
+
+/// Bytes of outlines, and of the elements in them if there are any.
+#[derive(Debug)]
+pub struct Outlined {
+    /// Those of the blocks.
+    pub blocks: Vec<u8>,
+    /// Those of the elements.
+    pub mesh: Option<Vec<u8>>,
 }
 
 /// Bytes of the outlines, and what frames need to know of them.
 ///
 /// # Errors
 /// The first number that is not finite, with its block.
-pub fn outlines(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+pub fn outlines(head: &Head, outlines: &[Outline]) -> Result<(Outlined, Shape), FilmError> {
     let numbers: Vec<String> = head.block_numbers.iter().map(|number| number.name.clone()).collect();
     expect(
         "numbers of the motion of a block",
@@ -51,7 +66,7 @@ pub fn outlines(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), F
 }
 
 /// The same of a film whose blocks have these numbers.
-fn shape_of(numbers: Vec<String>, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+fn shape_of(numbers: Vec<String>, outlines: &[Outline]) -> Result<(Outlined, Shape), FilmError> {
     let points = || outlines.iter().flat_map(|block| block.loops.iter().flatten());
     for block in outlines {
         let numbers = [block.area, block.mass].into_iter().chain(block.centroid);
@@ -74,9 +89,11 @@ fn shape_of(numbers: Vec<String>, outlines: &[Outline]) -> Result<(Vec<u8>, Shap
         bytes.extend((block.loops.len() as u32).to_le_bytes());
         block.loops.iter().for_each(|points| bytes.extend((points.len() as u32).to_le_bytes()));
     }
-    let mut shape = Shape { origin, size, ends: Vec::new(), arms: Vec::new(), numbers };
+    let (mesh, mesh_bytes) =
+        Meshes::of(outlines, &numbers, origin, size)?.map_or((None, None), |(a, b)| (Some(b), Some(a)));
+    let mut shape = Shape { origin, size, ends: Vec::new(), arms: Vec::new(), numbers, mesh };
     shape.push_places(outlines, &mut bytes);
-    Ok((bytes, shape))
+    Ok((Outlined { blocks: bytes, mesh: mesh_bytes }, shape))
 }
 
 fn bounds<'a>(points: impl Iterator<Item = &'a [f64; 2]>) -> ([f64; 2], [f64; 2]) {
@@ -91,7 +108,7 @@ impl Shape {
     ///
     /// # Errors
     /// As [`outlines`].
-    pub fn changed(&self, outlines: &[Outline]) -> Result<(Vec<u8>, Self), FilmError> {
+    pub fn changed(&self, outlines: &[Outline]) -> Result<(Outlined, Self), FilmError> {
         shape_of(self.numbers.clone(), outlines)
     }
 
@@ -121,7 +138,7 @@ impl Shape {
     ///
     /// # Errors
     /// A list of the wrong length, or the first number that is not finite, with its block and the time.
-    pub fn frame(&self, frame: &Frame, [monitors, bolts]: [usize; 2], wanted: bool) -> Result<Vec<u8>, FilmError> {
+    pub fn frame(&self, frame: &Frame, [monitors, bolts]: [usize; 2], wanted: bool) -> Result<Framed, FilmError> {
         let corners = self.arms.len();
         expect("blocks of a frame", frame.blocks.len(), self.ends.len())?;
         expect("corners of a frame", frame.corners.len(), corners)?;
@@ -140,11 +157,11 @@ impl Shape {
         let is_wet = |corner: usize| wet.get(corner).copied().unwrap_or_default();
         let edges = frame.edges.iter().enumerate();
         bytes.extend(edges.map(|(corner, &state)| state as u8 | if is_wet(corner) { WET } else { 0 }));
-        let motion = self.push_numbers(frame, &mut bytes)?;
+        let numbers = self.push_numbers(frame, &mut bytes)?;
         push_monitors(frame, &mut bytes)?;
-        self.push_corners(frame, &motion, quantum, &mut bytes);
+        self.push_corners(frame, &numbers, quantum, &mut bytes);
         push_structures(&frame.structures, frame.time, self.origin, wanted, &mut bytes)?;
-        Ok(bytes)
+        Ok((bytes, numbers))
     }
 
     /// The largest power of two that is fine enough for the model and for the motion (m).
@@ -162,12 +179,12 @@ impl Shape {
         Ok(libm::exp2(libm::log2(wanted.min(self.size * QUANTUM).max(least)).floor()))
     }
 
-    /// Appends the numbers of all blocks; returns the rigid motion of each as a reader will have it.
-    fn push_numbers(&self, frame: &Frame, bytes: &mut Vec<u8>) -> Result<Vec<[f32; 3]>, FilmError> {
+    /// Appends the numbers of all blocks; returns each as a reader will have it.
+    fn push_numbers(&self, frame: &Frame, bytes: &mut Vec<u8>) -> Result<Vec<Vec<f32>>, FilmError> {
         for block in frame.blocks {
             expect("numbers of a block", block.numbers.len(), self.numbers.len())?;
         }
-        let mut motion = vec![[0.0_f32; 3]; frame.blocks.len()];
+        let mut kept = Vec::with_capacity(self.numbers.len());
         for (k, name) in self.numbers.iter().enumerate() {
             let width = if k < FULL { Width::Full } else { Width::Short };
             let mut numbers = Vec::with_capacity(frame.blocks.len());
@@ -175,18 +192,17 @@ impl Shape {
                 numbers.push(finite(block.numbers[k], frame.time, || format!("{name} of block {id}"))?);
             }
             push_planes(&numbers, width, bytes);
-            if k < MOTION.len() {
-                motion.iter_mut().zip(numbers).for_each(|(motion, number)| motion[k] = width.kept(number));
-            }
+            kept.push(numbers.into_iter().map(|number| width.kept(number)).collect());
         }
-        Ok(motion)
+        Ok(kept)
     }
 
     /// Appends what the rigid motion of its block leaves of each corner's displacement, in quanta.
-    fn push_corners(&self, frame: &Frame, motion: &[[f32; 3]], quantum: f64, bytes: &mut Vec<u8>) {
+    fn push_corners(&self, frame: &Frame, numbers: &[Vec<f32>], quantum: f64, bytes: &mut Vec<u8>) {
         let mut rest: [Vec<u8>; 2] = [Vec::new(), Vec::new()];
         let mut corner = 0;
-        for (&[x, y, turn], &end) in motion.iter().zip(&self.ends) {
+        for (block, &end) in self.ends.iter().enumerate() {
+            let [x, y, turn] = [0, 1, 2].map(|k| numbers[k][block]);
             let (sine, cosine) = libm::sincos(f64::from(turn));
             while corner < end {
                 let [a, b] = self.arms[corner];

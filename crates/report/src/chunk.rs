@@ -9,7 +9,7 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
 /// First bytes of a film; the last of them counts the versions of the format.
-pub const MAGIC: [u8; 8] = *b"enmmfil5";
+pub const MAGIC: [u8; 8] = *b"enmmfil6";
 
 /// Bytes before the body of a chunk.
 pub const HEADER: usize = 16;
@@ -23,8 +23,12 @@ pub enum Kind {
     Head,
     /// Outlines of the blocks.
     Outlines,
+    /// Elements of the blocks of the outlines before.
+    Mesh,
     /// One frame.
     Frame,
+    /// Numbers of the elements and joints of the frame before.
+    Elements,
     /// Rows of the histories.
     Rows,
     /// A note as JSON.
@@ -32,17 +36,25 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 5] = [Self::Head, Self::Outlines, Self::Frame, Self::Rows, Self::Note];
+    const ALL: [Self; 7] =
+        [Self::Head, Self::Outlines, Self::Mesh, Self::Frame, Self::Elements, Self::Rows, Self::Note];
 
     fn letters(self) -> [u8; 4] {
         *match self {
             Self::Head => b"HEAD",
             Self::Outlines => b"OUTL",
+            Self::Mesh => b"MESH",
             Self::Frame => b"FRAM",
+            Self::Elements => b"ELEM",
             Self::Rows => b"ROWS",
             Self::Note => b"NOTE",
         }
     }
+}
+
+/// Length of a body once it is packed.
+pub fn packed_length(body: &[u8]) -> usize {
+    compress_to_vec_zlib(body, EFFORT).len()
 }
 
 /// The bytes of a chunk.

@@ -68,6 +68,9 @@ pub struct Column {
     pub quantity: String,
     /// Unit; empty for a pure number.
     pub unit: String,
+    /// Whether NaN stands for no value; elsewhere it is a failure.
+    #[serde(skip)]
+    pub gaps: bool,
 }
 
 /// A monitored point.
@@ -105,6 +108,19 @@ pub struct Outline {
     pub centroid: [f64; 2],
     /// Corners of each loop (m), outer loop first.
     pub loops: Vec<Vec<[f64; 2]>>,
+    /// Its elements; none in a film that shows blocks alone.
+    pub mesh: Mesh,
+}
+
+/// Elements of a block in the reference configuration.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Points (m) of its elements that are no corners of the block.
+    pub points: Vec<[f64; 2]>,
+    /// Points of each element by their numbers: the corners of the block, loop by loop, then [`Mesh::points`].
+    pub elements: Vec<Vec<u32>>,
+    /// Whether the edge behind each corner has an opening and a slip; of two edges that face each other, one has.
+    pub faces: Vec<bool>,
 }
 
 /// State of an edge of an outline in a frame: the edge behind corner `k` runs from corner `k` to the next of its loop.
@@ -198,6 +214,19 @@ pub struct Frame<'a> {
     pub monitors: &'a [MonitorFrame],
     /// Bolts, supports and water.
     pub structures: Structures<'a>,
+}
+
+/// Numbers of elements and joints in a frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Elements<'a> {
+    /// Displacement (m) of all [`Mesh::points`], block by block.
+    pub points: &'a [[f64; 2]],
+    /// Velocity (m/s) of all elements, at the mean of their points.
+    pub velocity: &'a [[f64; 2]],
+    /// Stress xx, yy, xy (Pa, tension positive) of all elements.
+    pub stress: &'a [[f64; 3]],
+    /// Opening and slip (m) of the edges that [`Mesh::faces`] names.
+    pub joints: &'a [[f64; 2]],
 }
 
 /// Information beside the frames, appended as soon as there is some.

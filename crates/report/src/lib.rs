@@ -11,6 +11,7 @@
 mod block;
 mod chunk;
 mod data;
+mod elements;
 mod error;
 mod number;
 mod page;
@@ -21,8 +22,8 @@ mod writer;
 
 pub use block::{MOTION, QUANTUM};
 pub use data::{
-    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Break, Column, EdgeState, Fact, Frame, Head, Marked,
-    MonitorFrame, MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable, Water, WaterDrain,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Break, Column, EdgeState, Elements, Fact, Frame, Head, Marked,
+    Mesh, MonitorFrame, MonitorPlace, Note, Outline, Structures, SupportFrame, Trial, TrialTable, Water, WaterDrain,
     WaterInlet,
 };
 pub use error::FilmError;

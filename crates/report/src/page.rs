@@ -14,9 +14,10 @@ const EDITOR: &str = include_str!("../viewer/editor.html");
 const PAGE: &str = include_str!("../viewer/viewer.html");
 const STYLE: &str = include_str!("../viewer/viewer.css");
 /// Scripts in the order in which a page runs them.
-const SCRIPTS: [&str; 8] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("../viewer/film.js"),
     include_str!("../viewer/colour.js"),
+    include_str!("../viewer/elements.js"),
     include_str!("../viewer/structures.js"),
     include_str!("../viewer/slope.js"),
     include_str!("../viewer/chart.js"),

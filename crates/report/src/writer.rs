@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use enmm_io::files::{Unfinished, open_result, remove_if_there};
 
-use crate::block::{self, Shape};
+use crate::block::{self, Outlined, Shape};
 use crate::chunk::{self, Chunk, Chunks, Kind, MAGIC};
-use crate::data::{Frame, Head, Note, Outline};
+use crate::data::{Elements, Frame, Head, Note, Outline};
 use crate::error::{FilmError, expect, finite};
 use crate::number::{Width, push_planes};
 
@@ -21,12 +21,15 @@ pub struct FilmWriter {
     path: PathBuf,
     file: File,
     shape: Shape,
-    columns: Vec<String>,
+    /// Name of each column, and whether it may be without values.
+    columns: Vec<(String, bool)>,
     monitors: usize,
     bolts: usize,
     rows: Vec<Vec<f64>>,
     /// Stage of the last frame.
     stage: Option<u32>,
+    /// Numbers of all blocks in the last frame, as a reader has them.
+    numbers: Vec<Vec<f32>>,
     held: Option<Held>,
 }
 
@@ -56,7 +59,7 @@ impl FilmWriter {
         file.write_all(&MAGIC).map_err(FilmError::at(path))?;
         let mut film = Self::of(path, file, shape, head);
         film.append(Kind::Head, 0.0, &json(head, path)?)?;
-        film.append(Kind::Outlines, 0.0, &bytes)?;
+        film.append_outlines(0.0, &bytes)?;
         Ok(film)
     }
 
@@ -74,9 +77,10 @@ impl FilmWriter {
     }
 
     fn of(path: &Path, file: File, shape: Shape, head: &Head) -> Self {
-        let columns = head.columns.iter().map(|column| column.name.clone()).collect();
+        let columns = head.columns.iter().map(|column| (column.name.clone(), column.gaps)).collect();
         let (monitors, bolts) = (head.monitors.len(), head.bolts.len());
-        Self { path: path.to_owned(), file, shape, columns, monitors, bolts, rows: Vec::new(), stage: None, held: None }
+        let (rows, numbers) = (Vec::new(), Vec::new());
+        Self { path: path.to_owned(), file, shape, columns, monitors, bolts, rows, stage: None, numbers, held: None }
     }
 
     /// Appends a frame, behind the rows that were gathered before.
@@ -86,11 +90,28 @@ impl FilmWriter {
     pub fn frame(&mut self, frame: &Frame) -> Result<(), FilmError> {
         // Supports change with the stage alone.
         let begins = self.stage != Some(frame.stage);
-        let bytes = self.shape.frame(frame, [self.monitors, self.bolts], begins)?;
+        let (bytes, numbers) = self.shape.frame(frame, [self.monitors, self.bolts], begins)?;
         self.flush()?;
         self.append(Kind::Frame, frame.time, &bytes)?;
-        self.stage = Some(frame.stage);
+        (self.stage, self.numbers) = (Some(frame.stage), numbers);
         Ok(())
+    }
+
+    /// Appends the numbers of elements and joints at the time (s) of the last frame.
+    ///
+    /// # Errors
+    /// As [`FilmWriter::frame`]; also outlines without elements, and a film without a frame.
+    pub fn elements(&mut self, time: f64, elements: &Elements) -> Result<(), FilmError> {
+        expect("frames before elements", usize::from(!self.numbers.is_empty()), 1)?;
+        expect("meshes of elements", usize::from(self.shape.mesh.is_some()), 1)?;
+        let Some(mesh) = &mut self.shape.mesh else { return Ok(()) };
+        let bytes = mesh.frame(time, elements, &self.numbers)?;
+        self.append(Kind::Elements, time, &bytes)
+    }
+
+    fn append_outlines(&mut self, time: f64, bytes: &Outlined) -> Result<(), FilmError> {
+        self.append(Kind::Outlines, time, &bytes.blocks)?;
+        bytes.mesh.as_ref().map_or(Ok(()), |mesh| self.append(Kind::Mesh, time, mesh))
     }
 
     /// Appends other outlines, which blocks have from a time (s) on: of frames that follow.
@@ -100,7 +121,8 @@ impl FilmWriter {
     pub fn outlines(&mut self, time: f64, outlines: &[Outline]) -> Result<(), FilmError> {
         let (bytes, shape) = self.shape.changed(outlines)?;
         self.flush()?;
-        self.append(Kind::Outlines, time, &bytes)?;
+        self.append_outlines(time, &bytes)?;
+        self.numbers.clear();
         let before = std::mem::replace(&mut self.shape, shape);
         if let Some(held) = &mut self.held {
             held.shape.get_or_insert(before);
@@ -115,7 +137,8 @@ impl FilmWriter {
     pub fn row(&mut self, row: &[f64]) -> Result<(), FilmError> {
         expect("numbers of a row", row.len(), self.columns.len())?;
         let time = row.first().copied().unwrap_or_default();
-        for (&value, name) in row.iter().zip(&self.columns) {
+        let is_gap = |value: f64, gaps: bool| gaps && value.is_nan();
+        for (&value, (name, _)) in row.iter().zip(&self.columns).filter(|(value, column)| !is_gap(**value, column.1)) {
             finite(value, time, || format!("{name} of a row"))?;
         }
         self.rows.push(row.to_vec());
@@ -155,10 +178,11 @@ impl FilmWriter {
     /// Forgets what has been kept back; what follows is no longer kept back.
     pub fn discard(&mut self) {
         let Some(held) = self.held.take() else { return };
-        self.stage = held.stage;
+        (self.stage, self.numbers) = (held.stage, Vec::new());
         if let Some(shape) = held.shape {
             self.shape = shape;
         }
+        self.forget_elements();
         match held.rows {
             Some(rows) => self.rows = rows,
             None => self.rows.truncate(held.before),
@@ -173,7 +197,16 @@ impl FilmWriter {
         self.release()?;
         self.flush()?;
         (self.file, self.stage) = shorten(&self.path, until)?;
+        self.numbers.clear();
+        self.forget_elements();
         Ok(())
+    }
+
+    /// Elements that follow stand for themselves: those before may not be in the film.
+    fn forget_elements(&mut self) {
+        if let Some(mesh) = &mut self.shape.mesh {
+            mesh.forget();
+        }
     }
 
     /// Writes the rows that are gathered.
@@ -210,7 +243,7 @@ impl FilmWriter {
 }
 
 /// Bytes and shape of the outlines of a film, and whether its head is one.
-fn checked(head: &Head, outlines: &[Outline]) -> Result<(Vec<u8>, Shape), FilmError> {
+fn checked(head: &Head, outlines: &[Outline]) -> Result<(Outlined, Shape), FilmError> {
     for monitor in &head.monitors {
         for value in monitor.place {
             finite(value, 0.0, || format!("place of monitor {:?}", monitor.name))?;
@@ -246,11 +279,12 @@ fn keep(from: &Path, file: File, until: f64) -> Result<Option<u32>, FilmError> {
     let mut chunks = Chunks::new(BufReader::new(film)).map_err(no_film)?;
     let mut kept = BufWriter::new(file);
     kept.write_all(&MAGIC).map_err(&unwritten)?;
-    let (mut last, mut has_outlines): (Option<Chunk>, bool) = (None, false);
+    let (mut last, mut has_outlines, mut has_mesh): (Option<Chunk>, bool, bool) = (None, false, false);
     while let Some(chunk) = chunks.next().map_err(no_film)? {
         // Those of the start, whose time is no time of the model.
         let is_first = chunk.kind == Kind::Outlines && !std::mem::replace(&mut has_outlines, true);
-        let begins = chunk.kind == Kind::Head || is_first;
+        let is_first_mesh = chunk.kind == Kind::Mesh && !std::mem::replace(&mut has_mesh, true);
+        let begins = chunk.kind == Kind::Head || is_first || is_first_mesh;
         if begins || chunk.time <= until {
             kept.write_all(&chunk.bytes).map_err(&unwritten)?;
             if chunk.kind == Kind::Frame {

@@ -340,7 +340,7 @@ fn what_cannot_be_shown_is_refused_with_its_place() {
     let text = |error: FilmError| error.to_string();
     let mut moment = slope.at(0.5);
     moment.blocks[2].numbers[4] = f64::NAN;
-    assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("vy of block 2 is NaN at t = 0.5 s"));
+    assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("velocity_y of block 2 is NaN at t = 0.5 s"));
     let mut moment = slope.at(0.5);
     moment.corners[13][0] = f64::INFINITY;
     assert!(text(film.frame(&moment.frame()).unwrap_err()).starts_with("displacement of corner 13, in block 1 is inf"));
@@ -358,6 +358,23 @@ fn what_cannot_be_shown_is_refused_with_its_place() {
     let size = std::fs::metadata(&path).unwrap().len();
     film.frame(&slope.at(0.5).frame()).unwrap();
     assert!(std::fs::metadata(&path).unwrap().len() > size, "a refused frame leaves the film as it was");
+}
+
+/// A gauge whose rock is gone has no value: NaN, which comes back as such; what is infinite is a failure there too.
+#[test]
+fn columns_with_gaps_may_be_without_values() {
+    let (folder, slope) = (tempdir().unwrap(), Slope::new(2, 2));
+    let path = folder.path().join("film.bin");
+    let mut with_gaps = head();
+    with_gaps.columns[1].gaps = true;
+    let mut film = FilmWriter::create(&path, &with_gaps, &slope.outlines).unwrap();
+    film.row(&[0.0, 1.5]).unwrap();
+    film.row(&[0.1, f64::NAN]).unwrap();
+    assert!(film.row(&[0.2, f64::INFINITY]).unwrap_err().to_string().starts_with("wave of a row is inf"));
+    film.flush().unwrap();
+    let (_, rows) = frames_and_rows(&path);
+    assert_eq!(rows.len(), 2);
+    assert!(rows[0] == (0.0, 1.5) && rows[1].1.is_nan(), "{rows:?}");
 }
 
 #[test]

@@ -277,7 +277,20 @@ fn quake() -> Value {
         "permanent": [{
             "stage": "quake", "displacement": 0.03829, "block": 3, "place": [50.66, 25.54],
             "joints": [{ "joint": "joint[0]", "slip": 0.03837, "place": [47.88, 22.52] }],
-            "monitors": [{ "name": "crest", "place": [71.0, 49.5], "displacement": [-0.03098, -0.02187] }]
+            "monitors": [{ "name": "crest", "place": [71.0, 49.5], "displacement": [-0.03098, -0.02187] }],
+            "laws": [
+                { "law": "bedding", "slip": 0.03837, "place": [47.88, 22.52] },
+                { "law": "cross", "slip": 0.00412, "place": [63.11, 35.07] }
+            ]
+        }],
+        "earthquakes": [{
+            "stages": ["quake"], "time": [1.2, 13.2], "interval": 0.0051,
+            "motions": [
+                { "name": "quiet[0]", "of": "outcrop", "axis": "x", "pga": 3.3551, "pga_g": 0.34212, "pgv": 0.2013,
+                  "pgd": 0.05541, "arias": 1.2077, "duration": 7.3312 },
+                { "name": "crest", "of": "monitor", "axis": "y", "pga": 5.1277, "pga_g": 0.52288, "pgv": 0.2919,
+                  "pgd": 0.12013, "arias": 2.6044, "duration": 6.9907 }
+            ]
         }],
         "model": { "blocks": 11, "area": 4500.0, "mesh_size": 1.5 },
         "bolts": [], "warnings": [], "notes": [], "input": input()
@@ -299,6 +312,44 @@ fn the_first_page_begins_with_the_verdict_and_has_what_an_earthquake_left() {
 }
 
 #[test]
+fn an_earthquake_has_a_chapter_with_its_motions_and_what_slipped() {
+    let html = html(folder_with(&[("summary.json", &quake())]).path());
+    let chapter = html.split("<h2>Earthquake</h2>").nth(1).and_then(|rest| rest.split("</section>").next());
+    let chapter = chapter.expect("a chapter");
+    let places = ["quiet[0], outcrop", "crest", "3.3551", "0.52288", "2.6044", "Joint law", "bedding", "cross"];
+    let at = places.map(|text| chapter.find(text).unwrap_or_else(|| panic!("{text} is not in the chapter")));
+    assert!(at.is_sorted(), "{at:?}");
+    assert!(chapter.contains("<data value=\"0.00412\">4.12</data>"), "slip in millimetres");
+    let mut known = Vec::new();
+    numbers(&quake(), &mut known);
+    for value in chapter.split("<data value=\"").skip(1).map(number) {
+        assert!(known.contains(&value), "{value}");
+    }
+}
+
+#[test]
+fn a_yield_acceleration_stands_beside_newmarks_block_and_the_run() {
+    let mut record = fos();
+    record["seismic"] = json!({
+        "yield_coefficient": 0.1234, "bracket": { "stable": 0.1231, "unstable": 0.1237 }, "bound": 0.1249,
+        "direction": "left", "failing": { "mechanism": "slides" },
+        "newmark": [{ "record": "quiet[0]", "pga_g": 0.342, "displacement": 0.0261, "displacement_reversed": 0.0557 }],
+        "run": { "displacement": 0.0363 }
+    });
+    let html = html(folder_with(&[("fos.json", &record)]).path());
+    let chapter = html.split("<h2>Earthquake</h2>").nth(1).and_then(|rest| rest.split("</section>").next());
+    let chapter = chapter.expect("a chapter");
+    for text in ["0.1234", "0.1249", ">left<", ">slides<", "0.0261", "0.0557", "0.0363"] {
+        assert!(chapter.contains(text), "{text} is not in the chapter");
+    }
+}
+
+#[test]
+fn a_report_of_a_slope_that_nothing_shook_has_no_earthquake() {
+    assert!(!html(folder_with(&[("fos.json", &fos())]).path()).contains("Earthquake"));
+}
+
+#[test]
 fn a_stage_that_failed_is_named_with_its_mechanism() {
     let mut run = quake();
     run["stages"][0] = json!({
@@ -307,4 +358,52 @@ fn a_stage_that_failed_is_named_with_its_mechanism() {
     });
     let html = html(folder_with(&[("summary.json", &run)]).path());
     assert!(html.contains("FAILED by toppling, ended early"));
+}
+
+/// A sweep that `enmm sweep` has made of one key.
+fn swept() -> Value {
+    let sample = |angle: f64, factor: f64, status: &str| {
+        let values = json!({ "joint_law.fault.friction_deg": angle });
+        json!({ "values": values, "level_tops": factor, "status": status })
+    };
+    json!({
+        "title": "Bench slope", "version": "0.1.0", "case_file": "slope.toml", "case_hash": "0123456789abcdef",
+        "settings": [], "kind": "curve", "output": "level_tops", "limit": 1.0,
+        "keys": [{ "key": "joint_law.fault.friction_deg", "values": [20.0, 30.0, 40.0] }],
+        "samples": [sample(20.0, 0.8123, "found"), sample(30.0, 1.2345, "found"), sample(40.0, 1000.0, "at_least")],
+        "crossings": [{ "value": 24.4457, "between": [20.0, 30.0] }],
+        "without_answer": [], "doubtful": [], "input": input()
+    })
+}
+
+#[test]
+fn a_sweep_has_a_chapter_with_its_picture_crossings_and_samples() {
+    let folder = folder_with(&[("fos.json", &fos()), ("sweep/sweep.json", &swept())]);
+    fs::write(folder.path().join("sweep/sweep.svg"), "<svg xmlns=\"x\"/>").expect("written");
+    let shown = html(folder.path());
+    let chapter = shown.split("<h2>Sweep of values</h2>").nth(1).and_then(|rest| rest.split("<h2>").next());
+    let chapter = chapter.expect("a chapter");
+    for number in ["0.8123\">0.812", "1.2345\">1.23", "24.4457\">24.4457", "30\">30"] {
+        assert!(chapter.contains(&format!("<data value=\"{number}</data>")), "{number} in {chapter}");
+    }
+    assert!(chapter.contains("at least") && chapter.contains("<figure>") && chapter.contains("an upper bound"));
+    let first = shown.split("</header>").next().expect("a first page");
+    assert!(first.contains("joint_law.fault.friction_deg = <data value=\"24.4457\">24.4</data>"), "{first}");
+    let mut known = Vec::new();
+    [fos(), swept()].iter().for_each(|record| numbers(record, &mut known));
+    assert!(shown.split("<data value=\"").skip(1).map(number).all(|value| known.contains(&value)));
+}
+
+#[test]
+fn a_sweep_of_changes_one_by_one_has_their_effects() {
+    let mut record = swept();
+    record["kind"] = json!("tornado");
+    record["crossings"] = Value::Null;
+    record["of_the_case"] = json!(1.1111);
+    record["effects"] = json!([{ "key": "angle", "outputs": [[20.0, 0.8123], [30.0, 1.2345]], "range": 0.4222 }]);
+    let shown = html(folder_with(&[("sweep.json", &record)]).path());
+    for part in ["1.1111\">1.11", "0.4222\">0.422", "Each key alone, the greatest effect first"] {
+        assert!(shown.contains(part), "{part}");
+    }
+    assert!(!shown.contains("F passes the limit at") && !shown.contains("Nowhere among these values"));
 }

@@ -108,8 +108,19 @@ const COLOURS = [
     logarithmic: false,
     value: (frame, k) => 0.5 * (frame.mean_stress_xx[k] + frame.mean_stress_yy[k]),
   },
+  {
+    key: "shear",
+    name: "Greatest shear stress",
+    ramp: "viridis",
+    unit: "Pa",
+    logarithmic: false,
+    value: (frame, k) =>
+      Math.hypot(0.5 * (frame.mean_stress_xx[k] - frame.mean_stress_yy[k]), frame.mean_stress_xy[k]),
+  },
   { key: "block", name: "Block" },
   { key: "joint", name: "Joint state" },
+  { key: "slip", name: "Joint slip", ramp: "viridis", unit: "m", logarithmic: true, ofJoints: true },
+  { key: "opening", name: "Joint opening", ramp: "viridis", unit: "m", logarithmic: true, ofJoints: true },
 ];
 
 // What a film has to colour by; a model as it is built has not moved. Keys of the keyboard are places in `COLOURS`.
@@ -118,8 +129,11 @@ function coloursOf(film) {
     displacement: film.head.command !== "edit",
     velocity: film.has("velocity"),
     stress: film.has("stress"),
+    shear: film.has("stress"),
     block: true,
     joint: film.frames.some((frame) => frame.edges?.some(Boolean)),
+    slip: film.hasJoints(),
+    opening: film.hasJoints(),
   };
   return [...COLOURS.filter(({ key }) => has[key]), ...film.others().map(colourOf)];
 }
@@ -134,6 +148,14 @@ function colourOf({ name, meaning, unit, range }) {
 // there are many, so that a single chip does not take all colours.
 function rangeOf(film, colour, frames, base) {
   if (colour.range) return colour.range;
+  if (colour.ofJoints) {
+    const of = (frame) => frame.elements && numbersOfJoints(frame, colour.key);
+    return rangeOfParts(frames, of, true);
+  }
+  if (OF_ELEMENTS[colour.key] && frames.some((frame) => frame.elements)) {
+    const of = (frame) => numbersOfElements(frame, colour.key, film.under(base, frame.shape));
+    return rangeOfParts(frames, of, colour.logarithmic);
+  }
   const values = [];
   for (const frame of frames) {
     const from = film.under(base, frame.shape);

@@ -1,6 +1,6 @@
 // The film: bytes to typed arrays. `format.md` of the crate has the layout.
 
-const MAGIC = "enmmfil5";
+const MAGIC = "enmmfil6";
 const CHUNK_HEADER = 16;
 // Vectors and tensors among the numbers of blocks; the page shows all others one by one.
 const PARTS = {
@@ -154,6 +154,7 @@ function readOutlines(reader) {
   shape.y = reader.planes(corners, 4);
   shape.real = realCorners(shape);
   shape.places = new Map(shape.blocks.map((block, k) => [block.id, k]));
+  shape.points = corners;
   return shape;
 }
 
@@ -200,6 +201,7 @@ function frameOf(frame, shape, numbers) {
     seen.displacement_y[k] += armX * sine + armY * less;
   });
   seen.restX = seen.restY = new Int8Array(shape.corners);
+  seen.elements = null;
   return seen;
 }
 
@@ -222,6 +224,8 @@ function readFrame(reader, time, shape, { monitors, bolts, block_numbers }, befo
   frame.restX = slim(reader.integers(shape.corners));
   frame.restY = slim(reader.integers(shape.corners));
   readStructures(reader, frame, bolts.length, withSupports ? null : before.supports);
+  // Until others follow, those of the frame before.
+  frame.elements = before?.shape === shape ? before.elements : null;
   return frame;
 }
 
@@ -310,9 +314,16 @@ class Film {
       this.head = json();
       this.rows.columns = this.head.columns.map(() => []);
     } else if (kind === "OUTL") this.lastShape = this.shape = readOutlines(reader);
+    else if (kind === "MESH") readMesh(reader, this.lastShape);
+    else if (kind === "ELEM") this.takeElements(reader, time);
     else if (kind === "FRAM") this.frames.push(readFrame(reader, time, this.lastShape, this.head, this.frames.at(-1)));
     else if (kind === "ROWS") this.takeRows(reader);
     else if (kind === "NOTE") this.notes.push({ time, ...json() });
+  }
+
+  takeElements(reader, time) {
+    const frame = this.frames.at(-1);
+    frame.elements = readElements(reader, frame.shape, time, frame.elements);
   }
 
   takeRows(reader) {
@@ -358,34 +369,54 @@ class Film {
     return PARTS[whole].every((part) => this.head.block_numbers.some(({ name }) => name === part));
   }
 
+  // Whether frames have openings and slips of joints.
+  hasJoints() {
+    return this.frames.some(({ shape, elements }) => elements && shape.joints.length);
+  }
+
   // Numbers of blocks that are no part of a vector or tensor.
   others() {
     return this.head.block_numbers.filter(({ name }) => !OWN_ROWS.has(name));
   }
 
-  // Sum of what a block's rigid motion and its deformation do to each corner (m), at a fraction of the way from one
-  // frame to another.
+  // Displacement of each corner (m), at a fraction of the way from one frame to another, and of the other points of
+  // elements where there are any: what the rigid motion of their block does, and what that leaves.
   displace(from, to, part, outX, outY) {
-    const { blocks, centreX, centreY, x, y } = this.shape,
-      a = this.under(this.frames[from]),
-      // Nothing moves on to a moment at which other blocks are there.
-      b = this.frames[to].shape === this.frames[from].shape ? this.under(this.frames[to]) : a,
-      rest = 1 - part;
-    for (let k = 0; k < blocks.length; k++) {
-      const ux = a.displacement_x[k] * rest + b.displacement_x[k] * part,
-        uy = a.displacement_y[k] * rest + b.displacement_y[k] * part;
-      // The shorter way round: rotations are known within half a turn.
-      let way = b.rotation[k] - a.rotation[k];
-      way -= 2 * Math.PI * Math.round(way / (2 * Math.PI));
-      const turn = a.rotation[k] + part * way,
-        sine = Math.sin(turn),
-        less = Math.cos(turn) - 1;
-      for (let c = blocks[k].first; c < blocks[k].end; c++) {
+    const a = this.under(this.frames[from]);
+    // Nothing moves on to a moment at which other blocks are there.
+    const b = this.frames[to].shape === this.frames[from].shape ? this.under(this.frames[to]) : a;
+    displaceBetween(a, b, part, outX, outY);
+  }
+}
+
+// Displacement of all points (m) of a shape between two frames of it.
+function displaceBetween(a, b, part, outX, outY) {
+  const { blocks, centreX, centreY, x, y, corners } = a.shape,
+    rest = 1 - part;
+  const left = [a.restX, a.restY, b.restX, b.restY],
+    motions = [a, b].map(({ elements }) => elements?.motion),
+    leftBetween = motions.flatMap((motion) => motion?.values ?? [null, null]);
+  const weights = [a.quantum * rest, b.quantum * part],
+    weightsBetween = [(motions[0]?.quantum ?? 0) * rest, (motions[1]?.quantum ?? 0) * part];
+  for (let k = 0; k < blocks.length; k++) {
+    const ux = a.displacement_x[k] * rest + b.displacement_x[k] * part,
+      uy = a.displacement_y[k] * rest + b.displacement_y[k] * part;
+    // The shorter way round: rotations are known within half a turn.
+    let way = b.rotation[k] - a.rotation[k];
+    way -= 2 * Math.PI * Math.round(way / (2 * Math.PI));
+    const turn = a.rotation[k] + part * way,
+      sine = Math.sin(turn),
+      less = Math.cos(turn) - 1;
+    const move = (first, end, behind, [ax, ay, bx, by], [ofA, ofB]) => {
+      for (let c = first; c < end; c++) {
         const armX = x[c] - centreX[k],
-          armY = y[c] - centreY[k];
-        outX[c] = ux + armX * less - armY * sine + a.restX[c] * a.quantum * rest + b.restX[c] * b.quantum * part;
-        outY[c] = uy + armX * sine + armY * less + a.restY[c] * a.quantum * rest + b.restY[c] * b.quantum * part;
+          armY = y[c] - centreY[k],
+          at = c - behind;
+        outX[c] = ux + armX * less - armY * sine + (ax ? ax[at] * ofA : 0) + (bx ? bx[at] * ofB : 0);
+        outY[c] = uy + armX * sine + armY * less + (ay ? ay[at] * ofA : 0) + (by ? by[at] * ofB : 0);
       }
-    }
+    };
+    move(blocks[k].first, blocks[k].end, 0, left, weights);
+    if (blocks[k].points) move(...blocks[k].points, corners, leftBetween, weightsBetween);
   }
 }

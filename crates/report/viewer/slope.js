@@ -1,6 +1,7 @@
 // The slope on its canvas: camera, drawing, and what lies under a pointer. Places are in metres from the film's origin.
 
 const TINY = 24; // Pixels below which a block is drawn by its corners alone.
+const AT_A_TIME = 16; // Blocks of one colour that are filled together.
 const REACH = 12; // How near (CSS pixels) a click must come to a monitor.
 const FOOT = 30; // Height of the length bar with its label (px).
 
@@ -14,22 +15,22 @@ class Slope {
     this.fitted = true;
   }
 
-  // Arrays for the corners of the blocks that are shown.
+  // Arrays for the corners of the blocks that are shown, and the other points of elements.
   makeRoom() {
-    const corners = this.film.shape.corners;
-    for (const name of ["x", "y", "baseX", "baseY"]) this[name] = new Float32Array(corners);
+    const { points } = this.film.shape;
+    for (const name of ["x", "y", "baseX", "baseY"]) this[name] = new Float32Array(points);
   }
 
-  // Puts every corner where it is drawn. `base` is a frame from which displacements count, or null.
+  // Puts every point where it is drawn. `base` is a frame from which displacements count, or null.
   pose(moment, magnification, base) {
     const { film } = this,
       shape = film.shape;
-    if (this.x.length !== shape.corners) this.makeRoom();
+    if (this.x.length !== shape.points) this.makeRoom();
     const { x, y } = this;
     this.magnification = magnification;
     film.displace(moment.from, moment.to, moment.part, x, y);
     if (base !== null) film.displace(base, base, 0, this.baseX, this.baseY);
-    for (let c = 0; c < shape.corners; c++) {
+    for (let c = 0; c < shape.points; c++) {
       const fromX = base === null ? 0 : this.baseX[c],
         fromY = base === null ? 0 : this.baseY[c];
       x[c] = shape.x[c] + fromX + magnification * (x[c] - fromX);
@@ -105,13 +106,9 @@ class Slope {
     this.view = { scale, shiftX, shiftY, west, north, east, south };
   }
 
-  // Begins a path with the loops of a block, and returns whether any of it is in sight.
-  //
-  // Every block is a path of its own: browsers fill ten thousand small paths in some 30 ms, and one path with as many
-  // loops in a second.
-  trace(block) {
-    const { x, y, pen } = this,
-      { scale, shiftX, shiftY, west, east, south, north } = this.view;
+  // Least and greatest x, then least and greatest y of a block (m).
+  bounds(block) {
+    const { x, y } = this;
     let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
     for (let c = block.first; c < block.end; c++) {
       if (x[c] < left) left = x[c];
@@ -119,10 +116,21 @@ class Slope {
       if (y[c] < low) low = y[c];
       if (y[c] > high) high = y[c];
     }
+    return [left, right, low, high];
+  }
+
+  // Begins a path with the loops of a block, and returns whether any of it is in sight.
+  //
+  // Every block is a path of its own, unless it is joined to the one before: browsers fill ten thousand small paths in
+  // some 30 ms, and one path with as many loops in a second.
+  trace(block, joined = false) {
+    const { x, y, pen } = this,
+      { scale, shiftX, shiftY, west, east, south, north } = this.view,
+      [left, right, low, high] = this.bounds(block);
     if (right < west || left > east || high < south || low > north) return false;
     // The bending of a side is not visible on a block of a few pixels.
     const wanted = Math.max(right - left, high - low) * scale < TINY ? this.film.shape.real : null;
-    pen.beginPath();
+    if (!joined) pen.beginPath();
     for (const [first, end] of block.loops) {
       let begun = false;
       for (let c = first; c < end; c++) {
@@ -145,20 +153,43 @@ class Slope {
     this.look();
     // The usual side of a block on the screen (pixels): outlines of tiny blocks would only darken the picture.
     const side = film.shape.side * this.camera.scale;
+    const ofLines = over.joints || over.moved;
+    if (over.elements) drawElements(this, frame, over.elements);
+    if (ofLines) this.fillAlike(frame, theme.line);
     pen.strokeStyle = theme.edge;
     pen.lineWidth = side > 14 ? 1 : 0.5;
     pen.lineJoin = "bevel";
     film.shape.blocks.forEach((block, k) => {
-      if (frame.removed[k] || !this.trace(block)) return;
-      pen.fillStyle = paint(k);
-      pen.fill();
-      if (side > 4 && !over.joints) pen.stroke();
+      if (frame.removed[k] || ofLines || (over.elements && side <= 4) || !this.trace(block)) return;
+      if (!over.elements) {
+        pen.fillStyle = paint(k);
+        pen.fill();
+      }
+      if (side > 4) pen.stroke();
     });
     if (over.joints && frame.edges) this.drawJoints(frame, theme, side);
+    if (over.moved) drawMovedJoints(this, frame, over.moved);
+    if (over.crosses) drawCrosses(this, frame, over.crosses, theme);
     for (const mark of over.marks) this.drawMark(mark, frame, theme);
     if (over.bolts) drawStructures(this, frame, over.bolts, theme);
     if (over.block !== null && !frame.removed[over.block]) this.drawBlock(film.shape.blocks[over.block], theme);
+    if (film.shape.starts) drawProbe(this, frame, over, theme);
+    if (over.cursor) this.drawCursor(over.cursor, theme);
     over.monitors.forEach((monitor, k) => this.drawMonitor(monitor, k === over.monitor, theme));
+  }
+
+  // Fills all blocks in one colour, some at a time.
+  fillAlike(frame, colour) {
+    const { pen } = this;
+    pen.fillStyle = colour;
+    pen.beginPath();
+    let count = 0;
+    this.film.shape.blocks.forEach((block, k) => {
+      if (frame.removed[k] || !this.trace(block, true) || ++count % AT_A_TIME) return;
+      pen.fill();
+      pen.beginPath();
+    });
+    pen.fill();
   }
 
   // Edges by state; slipping ones and bridges on top. Dashes need blocks of some size to be seen.
@@ -235,6 +266,29 @@ class Slope {
     this.pen.stroke();
   }
 
+  // The place that arrow keys with Shift move.
+  drawCursor([px, py], theme) {
+    const { pen } = this;
+    for (const [colour, width] of [
+      [theme.halo, 5],
+      [theme.ink, 1.8],
+    ]) {
+      pen.beginPath();
+      for (const [dx, dy] of [
+        [1, 0],
+        [-1, 0],
+        [0, 1],
+        [0, -1],
+      ]) {
+        pen.moveTo(px + 4 * dx, py + 4 * dy);
+        pen.lineTo(px + 13 * dx, py + 13 * dy);
+      }
+      pen.strokeStyle = colour;
+      pen.lineWidth = width;
+      pen.stroke();
+    }
+  }
+
   drawMonitor(monitor, chosen, theme) {
     const { pen } = this,
       [x, y] = this.toScreen(monitor.x, monitor.y);
@@ -253,19 +307,22 @@ class Slope {
     pen.fillText(monitor.name, x + 9, y - 7);
   }
 
-  // What lies under a pixel: a monitor, a block, or nothing.
+  // The monitor that lies under a pixel, or a block with an element, and a joint near by.
   pick(px, py, frame, monitors) {
     const near = monitors.findIndex((monitor) => {
       const [x, y] = this.toScreen(monitor.x, monitor.y);
       return Math.hypot(px - x, py - y) <= REACH;
     });
     if (near >= 0) return { monitor: near };
-    const [x, y] = this.toWorld(px, py);
+    const [x, y] = this.toWorld(px, py),
+      { blocks, count } = this.film.shape,
+      joint = jointAt(this, frame, x, y);
     // The last that is drawn lies on top.
-    for (let k = this.film.shape.count - 1; k >= 0; k--) {
-      if (!frame.removed[k] && this.holds(this.film.shape.blocks[k], x, y)) return { block: k };
+    for (let k = count - 1; k >= 0; k--) {
+      if (!frame.removed[k] && this.holds(blocks[k], x, y))
+        return { block: k, element: elementAt(this, blocks[k], x, y), joint };
     }
-    return {};
+    return { joint };
   }
 
   // Whether a block holds a place: crossings of a ray with its loops, holes included.

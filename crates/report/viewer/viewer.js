@@ -2,6 +2,9 @@
 
 const by = (id) => document.getElementById(id);
 const MAGNIFICATIONS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
+const CURSOR_STEP = 8; // Way of the cursor with each key (px).
+const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const CROSSES = "Principal stresses as crosses: compression thin, tension thick with bars at its ends";
 const POLL = 1000; // Time between two questions to the server of a film that grows (ms).
 
 class Viewer {
@@ -11,8 +14,10 @@ class Viewer {
     this.chart = new Chart(by("chart"));
     this.player = new Player(film, () => this.refresh());
     this.colour = coloursOf(film)[0];
-    this.choice = { block: null, monitor: null };
-    this.settings = { magnification: 1, sinceStage: false, logarithmic: false, structures: true };
+    this.choice = { block: null, monitor: null, element: null, joint: null };
+    this.settings = { magnification: 1, sinceStage: false, logarithmic: false, crosses: false, structures: true };
+    // Pixel of the canvas that keys have moved to, or null.
+    this.cursor = null;
     this.marks = [];
     this.theme = {};
     this.due = false;
@@ -51,7 +56,7 @@ class Viewer {
     while (this.marks.length < marked.length) this.marks.push(this.marks.length === 0);
     by("timeline").hidden = film.frames.length < 2 && !film.rows.time.length;
     [by("slider").min, by("slider").max] = [film.start, film.end];
-    this.base = undefined;
+    this.base = this.greatest = undefined;
     this.buildPanel();
     this.buildCharts();
     this.range();
@@ -97,6 +102,7 @@ class Viewer {
     const held = by("panel").scrollTop;
     by("panel").replaceChildren(
       ...this.film.of("verdict").slice(-1).map(verdictSection),
+      element("section", { id: "probe" }),
       element("section", { id: "choice" }),
       ...panelSections(this.film, this.marks, toggle),
       this.settingsSection(),
@@ -147,12 +153,17 @@ class Viewer {
       element("label", {}, "Displacements drawn", slider, shown),
       ...since,
       box("logarithmic", "Logarithmic colours, three decades", "logarithmic"),
+      ...(this.film.frames.some(({ elements }) => elements) ? [box("crosses", CROSSES, "crosses")] : []),
       ...(hasStructures(this.film) ? [box("structures", "Bolts, supports and water", "structures"), signs] : []),
     );
   }
 
   buildCharts() {
-    const charts = [...chartsOf(this.film), ...chartsOfBlock(this.film, this.choice.block)],
+    const charts = [
+        ...chartsOf(this.film),
+        ...chartsOfBlock(this.film, this.choice.block),
+        ...chartsOfProbe(this.film, this.choice),
+      ],
       wanted = by("chart-quantity").value;
     this.charts = charts;
     by("chart-quantity").replaceChildren(
@@ -194,8 +205,8 @@ class Viewer {
     if (this.charts) this.setChart(this.chart.chart);
   }
 
-  choose({ block = null, monitor = null }) {
-    this.choice = { block, monitor };
+  choose({ block = null, monitor = null, element = null, joint = null }) {
+    this.choice = { block, monitor, element, joint };
     this.buildCharts();
     this.refresh();
   }
@@ -244,7 +255,11 @@ class Viewer {
       bar.style.background = `linear-gradient(to right, ${RAMPS[colour.ramp].join(", ")})`;
       const end = (value) => element("span", {}, digits(value / shown.weight).replace("-", "−"));
       const note =
-        colour.key === "stress" ? ", tension positive" : this.ranged !== null ? ", since the start of the stage" : "";
+        colour.key === "stress"
+          ? ", tension positive"
+          : this.ranged !== null && !colour.ofJoints
+            ? ", since the start of the stage"
+            : "";
       legend.replaceChildren(
         `${colour.name}${shown.name && ` (${shown.name})`}${note}${logarithmic ? ", logarithmic" : ""}`,
         bar,
@@ -274,6 +289,7 @@ class Viewer {
     const { film, choice } = this;
     if (film.shape === shape) return;
     if (choice.block !== null) choice.block = placesIn(film.shape, shape)[choice.block];
+    [choice.element, choice.joint] = [null, null];
     film.shape = shape;
     by("subtitle").textContent = this.subtitle();
   }
@@ -301,14 +317,39 @@ class Viewer {
     const { magnification, structures } = settings,
       bolts = structures ? boltsNow(film, moment, base, magnification) : null;
     const over = { joints: this.colour.key === "joint", marks, monitors: this.monitors, bolts, ...this.choice };
+    Object.assign(over, this.partsNow(frame, base), { cursor: this.cursor });
     slope.draw(frame, this.paint(frame, base), over, this.theme);
     this.showNumbers(frame, moment);
   }
 
-  // The colour of each block.
+  // Elements, joints and crosses of a frame, as they are drawn; null where there is nothing of them.
+  partsNow(frame, base) {
+    const { colour, settings } = this,
+      logarithmic = settings.logarithmic && colour.logarithmic;
+    if (!frame.elements) return { elements: null, moved: null, crosses: null };
+    const key = [colour.key, this.limits, logarithmic, base].join(" ");
+    if (this.steps?.frame !== frame || this.steps.key !== key) {
+      const numbers = colour.ofJoints
+        ? numbersOfJoints(frame, colour.key)
+        : numbersOfElements(frame, colour.key, this.film.under(this.film.frames[base]));
+      const step = (value) => (Number.isNaN(value) ? 255 : stepOf(value, this.limits, logarithmic));
+      this.steps = { frame, key, steps: numbers && Uint8Array.from(numbers, step) };
+    }
+    const { steps } = this.steps,
+      parts = steps && { steps, colours: RAMPS[colour.ramp], words: WORDS[colour.ramp] };
+    if (settings.crosses)
+      this.greatest ??= rangeOfParts(this.film.frames, (shown) => numbersOfElements(shown, "shear"), false)[1];
+    return {
+      elements: colour.ofJoints ? null : parts,
+      moved: colour.ofJoints ? parts : null,
+      crosses: settings.crosses ? this.greatest : null,
+    };
+  }
+
+  // The colour of each block; none where all are alike.
   paint(frame, base) {
     const { colour, theme, film } = this;
-    if (colour.key === "joint") return () => theme.line;
+    if (colour.key === "joint" || colour.ofJoints) return null;
     if (colour.key === "block")
       return (k) =>
         film.shape.blocks[k].fixed ? theme.line : BLOCK_FILLS[film.shape.blocks[k].id % BLOCK_FILLS.length];
@@ -345,10 +386,14 @@ class Viewer {
     this.showScale();
     for (const row of document.querySelectorAll("#stages tr[data-stage]"))
       row.classList.toggle("now", Number(row.dataset.stage) === frame.stage);
-    const shown = `${this.choice.block} ${this.choice.monitor} ${moment.from}`;
+    const shown = `${Object.values(this.choice).join(" ")} ${moment.from}`;
     if (shown === this.shownChoice) return;
     this.shownChoice = shown;
     by("choice").replaceWith(choiceSection(film, this.choice, frame));
+    by("probe").replaceWith(probeSection(this.choice, frame));
+    const heads = document.querySelectorAll("#probe h2, #choice h2"),
+      found = this.cursor ? Array.from(heads, (head) => head.textContent).join(", ") : "";
+    if (by("found").textContent !== found) by("found").textContent = found;
   }
 
   showScale() {
@@ -560,6 +605,18 @@ class Viewer {
     this.choose(this.slope.pick(px, py, frame, this.monitors));
   }
 
+  // Moves the place that keys choose, and chooses what is there.
+  moveCursor([dx, dy]) {
+    const { clientWidth, clientHeight } = by("slope"),
+      [px, py] = this.cursor ?? [clientWidth / 2, clientHeight / 2];
+    const far = this.cursor ? CURSOR_STEP : 0;
+    this.cursor = [
+      Math.max(0, Math.min(clientWidth, px + far * dx)),
+      Math.max(0, Math.min(clientHeight, py + far * dy)),
+    ];
+    this.click(...this.cursor);
+  }
+
   key(event) {
     const { target, key } = event;
     if (by("keys").open) return key === "Escape" && by("keys").close();
@@ -568,7 +625,12 @@ class Viewer {
     // A focused button or summary takes the space bar itself.
     if (key === " " && ["BUTTON", "SUMMARY", "INPUT"].includes(target.tagName) && target.id !== "slider") return;
     const { player, slope } = this,
-      acts = {
+      way = event.shiftKey && WAYS[key];
+    if (way && target.type !== "range") {
+      event.preventDefault();
+      return this.moveCursor(way);
+    }
+    const acts = {
         " ": () => player.toggle(),
         ArrowLeft: () => player.step(-1),
         ArrowRight: () => player.step(1),
@@ -580,7 +642,10 @@ class Viewer {
         0: () => slope.fit(),
         d: () => this.switchTheme(),
         "?": () => this.showKeys(),
-        Escape: () => this.choose({}),
+        Escape: () => {
+          this.cursor = null;
+          this.choose({});
+        },
       };
     const colour = by("colours").querySelector(`[data-colour="${COLOURS[Number(key) - 1]?.key}"]`);
     const act = colour ? () => colour.click() : acts[key];

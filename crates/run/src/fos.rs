@@ -14,6 +14,7 @@ use super::bound::{bound_record, bracket_record, factor};
 pub use super::found::{Found, remedy};
 use super::mechanism_page::write_fos_page;
 use super::meshes::{Meshes, OnMesh};
+use super::seismic::{self, Seismic};
 use enmm::engine_version;
 use enmm::model::{Case, Mechanism};
 use enmm_io::files::{at_path, write_atomic};
@@ -24,6 +25,7 @@ use enmm_record::input_record;
 use enmm_record::results::has_run;
 use enmm_record::summary::BoltRecord;
 use enmm_report::PAGE;
+use enmm_stability::strength_reduction::seismic::{Direction, SeismicOptions, SeismicTrial};
 use enmm_stability::strength_reduction::{
     End, FACTOR_RANGE, FailingBlock, HELD, MechanismOptions, Progress, Reduction, ReductionError, ReductionOptions,
     Series, TOLERANCE, Trial, mechanisms,
@@ -57,6 +59,10 @@ pub struct FosOptions<'a> {
     /// Meshes on which to look for it, the first that of the case and each finer by √2: more than one gives the error
     /// of the mesh.
     pub meshes: usize,
+    /// Whether to look for the yield acceleration as well.
+    pub seismic: bool,
+    /// The side to which the slope falls; that to which its ground falls where none is named.
+    pub direction: Option<Direction>,
     /// Set by another thread to end the search with the trials that are done.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -74,6 +80,8 @@ impl FosOptions<'_> {
             pictures: true,
             stage: None,
             meshes: 1,
+            seismic: false,
+            direction: None,
             interrupt: None,
         }
     }
@@ -138,7 +146,7 @@ pub enum FosError {
     Output(io::Error),
 }
 
-/// Finds the factor of safety of a case and writes its results.
+/// Finds the factor of safety of a case, and its yield acceleration where that is asked for, and writes its results.
 ///
 /// # Errors
 /// When something cannot be used, built or written; a search without end is not an error but an [`End`].
@@ -146,6 +154,7 @@ pub fn fos(
     loaded: &LoadedCase,
     options: &FosOptions,
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+    hear_seismic: &mut (dyn FnMut(&SeismicTrial, Progress) + Send),
 ) -> Result<Found, FosError> {
     let clock = Instant::now();
     let _held = Folder::open(&options.directory, loaded.source.inputs()).map_err(FosError::Directory)?;
@@ -153,9 +162,14 @@ pub fn fos(
     if options.meshes > 1 && found.main().end != End::Interrupted {
         found.meshes = Some(on_finer_meshes(loaded, options, &found, hear));
     }
+    if options.seismic && found.main().end != End::Interrupted {
+        found.seismic = Some(shaken(loaded, options, &found, hear_seismic)?);
+    }
     let record = record(loaded, options, &found, clock.elapsed().as_secs_f64());
     let directory = &options.directory;
     write(directory, &record, found.main()).map_err(FosError::Output)?;
+    Seismic::write(found.seismic.as_ref(), directory, &loaded.case.title, options.pictures)
+        .map_err(FosError::Output)?;
     if options.pictures {
         draw(directory, found.main()).map_err(FosError::Output)?;
         write_fos_page(directory, loaded, &found).map_err(FosError::Output)?;
@@ -179,20 +193,39 @@ pub fn search(
     let FosOptions { low, high, tolerance, interrupt, mechanisms: which, .. } = *options;
     let search = ReductionOptions { low, high, tolerance, interrupt, integrators: &enmm_implicit::Both };
     let mut find = || mechanisms(&case, which, &search, hear);
-    let found = match options.threads {
-        None => find(),
-        Some(threads) => {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.map_err(|_| FosError::Threads(threads))?.install(find)
-        }
-    };
-    let mut searches = found.map_err(|error| match error {
+    let mut searches = on_threads(options, &mut find)?.map_err(|error| failure(loaded, error))?;
+    searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
+    Ok(Found { searches, which, meshes: None, seismic: None })
+}
+
+/// Finds the yield acceleration of a case of which `found` is the search for the factor of safety.
+fn shaken(
+    loaded: &LoadedCase,
+    options: &FosOptions,
+    found: &Found,
+    hear: &mut (dyn FnMut(&SeismicTrial, Progress) + Send),
+) -> Result<Seismic, FosError> {
+    let FosOptions { direction, tolerance, interrupt, .. } = *options;
+    let case = up_to_stage(&loaded.case, options.stage.as_deref()).map_err(FosError::Options)?;
+    let search = SeismicOptions { direction, tolerance, interrupt, integrators: &enmm_implicit::Both };
+    let setting = seismic::Setting { loaded, case: &case, directory: &options.directory };
+    let mut find = || seismic::seismic(&setting, &search, found.main(), hear);
+    on_threads(options, &mut find)?.map_err(|error| failure(loaded, error))
+}
+
+/// Acts on as many threads as are asked for.
+fn on_threads<T: Send>(options: &FosOptions, act: &mut (dyn FnMut() -> T + Send)) -> Result<T, FosError> {
+    let Some(threads) = options.threads else { return Ok(act()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    Ok(pool.map_err(|_| FosError::Threads(threads))?.install(act))
+}
+
+fn failure(loaded: &LoadedCase, error: ReductionError) -> FosError {
+    match error {
         ReductionError::Case(invalid) => FosError::Case(loaded.source.locate(&invalid.key, &invalid.message)),
         ReductionError::Interrupted => FosError::Interrupted,
         other => FosError::NoRest(other),
-    })?;
-    searches[0].warnings.splice(0..0, loaded.warnings.iter().cloned());
-    Ok(Found { searches, which, meshes: None })
+    }
 }
 
 /// Searches on finer meshes of the same geometry than that of the case, on which `found` was.
@@ -237,7 +270,7 @@ fn on_mesh(size: f64, reduction: &Reduction) -> OnMesh {
         size,
         counts: Some([covers.element_count(), covers.block_count()]),
         bracket: bracket.filter(|_| reduction.factor().is_some() && reduction.at_most().is_none()),
-        end: end_name(&reduction.end).to_owned(),
+        end: reduction.end.name().to_owned(),
     }
 }
 
@@ -268,17 +301,6 @@ fn remove_drawings(directory: &Path) -> io::Result<()> {
     let pictures = PICTURES.into_iter().flat_map(|name| ["png", "svg"].map(|end| format!("{name}.{end}")));
     let drawings = pictures.chain(page.map(str::to_owned)).map(|name| directory.join(name));
     drawings.filter(|path| path.exists()).try_for_each(|path| fs::remove_file(&path).map_err(at_path(&path)))
-}
-
-/// A word for how a search ended.
-pub fn end_name(end: &End) -> &'static str {
-    match end {
-        End::Found => "found",
-        End::StableThroughout => "stable_throughout",
-        End::UnstableThroughout => "unstable_throughout",
-        End::Interrupted => "interrupted",
-        End::Failed(_) => "failed",
-    }
 }
 
 fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -> Value {
@@ -312,6 +334,9 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
     if let Some(meshes) = &found.meshes {
         record["meshes"] = meshes.record();
     }
+    if let Some(seismic) = &found.seismic {
+        record["seismic"] = seismic.record();
+    }
     if let (Value::Object(record), Value::Object(main)) = (&mut record, main) {
         record.extend(main);
     }
@@ -322,7 +347,7 @@ fn record(loaded: &LoadedCase, options: &FosOptions, found: &Found, wall: f64) -
 fn search_record(reduction: &Reduction) -> Value {
     let failing = reduction.first_unstable();
     let mut record = json!({
-        "status": end_name(&reduction.end),
+        "status": reduction.end.name(),
         "factor_of_safety": reduction.factor().filter(|_| reduction.at_most().is_none()),
         "at_least": reduction.at_least().filter(|_| reduction.at_most().is_none()),
         "at_most": reduction.at_most(),
@@ -392,7 +417,7 @@ fn others_record(reduction: &Reduction) -> serde_json::Map<String, Value> {
 /// A search in another setting as an object.
 fn series_record(series: &Series) -> Value {
     json!({
-        "status": end_name(&series.end),
+        "status": series.end.name(),
         "at_least": series.at_least(),
         "bracket": { "stable": series.low, "unstable": series.high },
         "trials": series.trials.iter().map(trial_record).collect::<Vec<_>>(),

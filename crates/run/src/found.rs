@@ -1,6 +1,7 @@
 //! Result of a search for a factor of safety.
 
 use crate::meshes::Meshes;
+use crate::seismic::Seismic;
 use enmm_stability::strength_reduction::{End, MechanismOptions, Reduction};
 
 /// Results: one search for each mechanism, in their order.
@@ -12,6 +13,8 @@ pub struct Found {
     pub which: MechanismOptions,
     /// The factor on finer meshes, where it was asked for.
     pub meshes: Option<Meshes>,
+    /// The yield acceleration, where it was asked for.
+    pub seismic: Option<Seismic>,
 }
 
 impl Found {

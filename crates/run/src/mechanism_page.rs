@@ -13,10 +13,13 @@ use enmm_io::files::Unfinished;
 use enmm_record::film::{Film, Opening, numbers};
 use enmm_stability::limit_analysis::continuum::{Bracket, Motion};
 use enmm_stability::limit_analysis::{self, Bound, Way};
-use enmm_stability::strength_reduction::{Reduction, Trial, Verdict};
+use enmm_stability::strength_reduction::{Begun, Reduction, Trial, Verdict};
 
 /// Motion of the fastest block of a mechanism in its page, over the greater side of the model.
 const SHOWN: f64 = 0.05;
+
+/// Frames of a trial that failed, both ends included.
+const FRAMES: u64 = 20;
 
 /// Writes the page of a search for the factor of safety.
 ///
@@ -24,19 +27,30 @@ const SHOWN: f64 = 0.05;
 /// Whatever the file system refuses, or a number that cannot be shown.
 pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> io::Result<()> {
     let main = found.main();
-    let simulation = &main.simulation;
-    let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
+    let Reduction { simulation, begun, .. } = main;
+    let first = begun.as_ref().map_or(simulation, |begun| &begun.simulation);
+    let axis = match begun {
+        Some(_) => Axis::time(),
+        None => Axis { name: "share of the motion".to_owned(), unit: String::new() },
+    };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
     let opening = Opening {
         command: "fos",
         film: unfinished.path().to_owned(),
         axis,
-        numbers: numbers(simulation),
+        numbers: numbers(first),
+        elements: true,
         columns: &[],
     };
-    let mut film = Film::open(directory, loaded, simulation, opening, None)?;
-    film.rigid_frame(simulation, 0.0, |_| (Vector::zeros(), 0.0))?;
-    film.frame_at(simulation, 1.0)?;
+    let mut film = Film::open(directory, loaded, first, opening, None)?;
+    let end = match begun {
+        Some(begun) => show_trial(&mut film, begun, simulation)?,
+        None => {
+            film.rigid_frame(simulation, 0.0, |_| (Vector::zeros(), 0.0))?;
+            film.frame_at(simulation, 1.0)?;
+            1.0
+        }
+    };
     for (k, search) in found.searches.iter().enumerate() {
         let name = if found.searches.len() > 1 { format!(" {}", k + 1) } else { String::new() };
         film.note(0.0, &Note::Trials(trials(search, &name)))?;
@@ -45,14 +59,33 @@ pub fn write_fos_page(directory: &Path, loaded: &LoadedCase, found: &Found) -> i
         }
         note_warnings(&mut film, search.warnings.iter().chain(remedy(search).iter()))?;
     }
-    let end = match main.first_unstable() {
-        Some(trial) => format!("end of the trial at F = {:.4}", trial.factor),
-        None => "the slope at rest".to_owned(),
+    let name = main.first_unstable().map_or("that fails".to_owned(), |trial| format!("at F = {:.4}", trial.factor));
+    let rows = match begun {
+        Some(_) => [
+            ("0 s".to_owned(), format!("the slope as the trial {name} begins, at rest")),
+            (format!("{end:.3} s"), "the end of that trial".to_owned()),
+        ],
+        None => [("0", "before gravity acts"), ("1", "the slope at rest")].map(|(a, b)| (a.to_owned(), b.to_owned())),
     };
-    let rows = [("0", "before gravity acts".to_owned()), ("1", end)];
-    film.note(0.0, &facts("What the slider shows", rows.map(|(name, value)| (name.to_owned(), value))))?;
-    film.note_changes(simulation)?;
-    film.close(1.0, "finished".to_owned())
+    film.note(0.0, &facts("What the slider shows", rows))?;
+    film.note_changes(first)?;
+    film.close(end, "finished".to_owned())
+}
+
+/// Appends the frames of a trial that failed, whose motion is made again; returns their last time (s) since it began.
+fn show_trial(film: &mut Film, begun: &Begun, ended: &Simulation) -> io::Result<f64> {
+    let start = begun.simulation.time();
+    let mut last = f64::NEG_INFINITY;
+    begun.replay(FRAMES - 1, |simulation| {
+        last = simulation.time() - start;
+        film.frame_at(simulation, last)
+    })?;
+    // A trial that ended by a numerical failure has no motion beyond.
+    let end = ended.time() - start;
+    if end > last {
+        film.frame_at(ended, end)?;
+    }
+    Ok(end.max(last))
 }
 
 /// Writes the page of a limit analysis.
@@ -63,8 +96,14 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening =
-        Opening { command: "bound", film: unfinished.path().to_owned(), axis, numbers: MOTION.to_vec(), columns: &[] };
+    let opening = Opening {
+        command: "bound",
+        film: unfinished.path().to_owned(),
+        axis,
+        numbers: MOTION.to_vec(),
+        elements: false,
+        columns: &[],
+    };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     let moving = &bound.level_tops.mechanism;
     let reach = SHOWN * greater_side(&simulation);
@@ -100,8 +139,14 @@ pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Brack
     let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
     let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening =
-        Opening { command: "bound", film: unfinished.path().to_owned(), axis, numbers: MOTION.to_vec(), columns: &[] };
+    let opening = Opening {
+        command: "bound",
+        film: unfinished.path().to_owned(),
+        axis,
+        numbers: MOTION.to_vec(),
+        elements: false,
+        columns: &[],
+    };
     let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
     film.frame_at(&simulation, 0.0)?;
     let reach = SHOWN * greater_side(&simulation);

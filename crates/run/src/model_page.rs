@@ -16,7 +16,7 @@ use enmm_record::film::{Film, Opening};
 pub fn write_model_page(directory: &Path, loaded: &LoadedCase, simulation: &Simulation) -> io::Result<PathBuf> {
     let axis = Axis { name: "time".to_owned(), unit: "s".to_owned() };
     let film = directory.join(FILM);
-    let opening = Opening { command: "edit", film, axis, numbers: MOTION.to_vec(), columns: &[] };
+    let opening = Opening { command: "edit", film, axis, numbers: MOTION.to_vec(), elements: false, columns: &[] };
     let mut film = Film::open(directory, loaded, simulation, opening, None)?;
     film.frame_at(simulation, 0.0)?;
     film.close(0.0, "finished".to_owned())?;

@@ -57,6 +57,30 @@ fn the_factor_is_that_of_limit_equilibrium() {
     }
 }
 
+/// The frames of the trial that fails come from its motion made once more, which ends in the same bits.
+#[test]
+fn the_trial_that_fails_can_be_made_again() {
+    for friction in [40.0, 20.0] {
+        let reduction = reduce(&case(friction, 0.0, ""), 1);
+        let begun = reduction.begun.as_ref().expect("a trial that fails");
+        let mut seen = Vec::new();
+        let shown = begun.replay(19, |simulation| {
+            seen.push((simulation.time(), simulation.state().displacement.clone()));
+            if seen.len() < 20 || simulation.state().velocity == reduction.simulation.state().velocity {
+                Ok(())
+            } else {
+                Err("other velocities at the end")
+            }
+        });
+        assert_eq!(shown, Ok(()));
+        let [(start, first), .., (end, last)] = &seen[..] else { panic!("no frames") };
+        assert_eq!(seen.len(), 20);
+        assert_eq!(*last, reduction.simulation.state().displacement);
+        assert!(first != last && (end - start - begun.duration()).abs() < 1e-9 * end);
+        assert!(seen.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    }
+}
+
 /// What stands and what slides by itself are the same slope with another strength: limits are those of one state.
 #[test]
 fn the_strength_of_the_case_changes_no_limit() {

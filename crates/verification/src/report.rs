@@ -112,9 +112,9 @@ pub fn document(record: &Record) -> String {
     );
     paragraph(
         &mut out,
-        "An error is relative to the exact value unless it has a unit. A tolerance is derived, for the reason beside \
-         it; a value outside its tolerance is **MISSED**. Exact values are closed forms evaluated with the problem's \
-         parameters unless marked as published or numerical. `shown only` marks values for comparison.",
+        "An error is relative to the exact value unless it has a unit. A tolerance is derived, for the reason whose \
+         number it cites; a value outside its tolerance is **MISSED**. Exact values are closed forms evaluated with the \
+         problem's parameters unless marked as published or numerical. `shown only` marks values for comparison.",
     );
     missed_section(&mut out, record);
     contents(&mut out, record);
@@ -183,10 +183,7 @@ fn section(out: &mut String, problem: &ProblemRecord) {
         paragraph(out, &format!("**MISSED**: no result, because: {trouble}"));
     }
     if !problem.rows.is_empty() {
-        out.push_str("| quantity | computed | exact | error | tolerance | verdict | why this tolerance |\n");
-        out.push_str("|---|---|---|---|---|---|---|\n");
-        problem.rows.iter().for_each(|row| out.push_str(&row_line(row)));
-        out.push('\n');
+        row_table(out, &problem.rows);
     }
     for [title, file] in &problem.plots {
         let _ = writeln!(out, "![{}]({PLOTS}/{file})\n", title.replace(['[', ']'], ""));
@@ -207,15 +204,36 @@ fn parameter_table(out: &mut String, parameters: &[ParameterRecord]) {
     out.push('\n');
 }
 
-fn row_line(row: &RowRecord) -> String {
+/// The rows of a problem, and below them why their tolerances are what they are: each reason once, under a number that
+/// the rows cite.
+fn row_table(out: &mut String, rows: &[RowRecord]) {
+    let mut reasons: Vec<&str> = Vec::new();
+    out.push_str("| quantity | computed | exact | error | tolerance | verdict |\n|---|---|---|---|---|---|\n");
+    for row in rows {
+        if !row.reason.is_empty() && !reasons.contains(&row.reason.as_str()) {
+            reasons.push(&row.reason);
+        }
+        let number = reasons.iter().position(|reason| *reason == row.reason);
+        out.push_str(&row_line(row, number.map_or_else(String::new, |k| format!(" ({})", k + 1))));
+    }
+    out.push('\n');
+    let numbered = reasons.iter().enumerate().map(|(k, reason)| format!("({}) {reason}", k + 1)).collect::<Vec<_>>();
+    if !numbered.is_empty() {
+        paragraph(out, &format!("Tolerances: {}.", numbered.join("; ")));
+    }
+}
+
+/// A row of the table; `mark` cites the reason of its tolerance.
+fn row_line(row: &RowRecord, mark: String) -> String {
     let [computed, exact] = [row.computed, row.exact].map(|value| text::quantity(value, &row.unit));
     let exact = if row.origin == "closed form" { exact } else { format!("{exact} ({})", row.origin) };
     let verdict = match text::verdict(row) {
         "MISSED" => "**MISSED**",
         other => other,
     };
-    let cells = [&row.quantity, &computed, &exact, &text::error(row), &text::tolerance(row)].map(|text| cell(text));
-    format!("| {} | {verdict} | {} |\n", cells.join(" | "), cell(&row.reason))
+    let tolerance = text::tolerance(row) + &mark;
+    let cells = [&row.quantity, &computed, &exact, &text::error(row), &tolerance].map(|text| cell(text));
+    format!("| {} | {verdict} |\n", cells.join(" | "))
 }
 
 /// A text that may stand in a table.

@@ -124,6 +124,12 @@ fn the_page_on_trust_quotes_the_report() {
         quoted += 1;
     }
     assert_eq!(quoted, 13, "rows of the table");
+    let soil = record.problem("C13").expect("C13").rows.iter().filter_map(|row| row.computed);
+    let other = page.lines().find(|line| line.starts_with("| slope in soil of Griffiths")).expect("a row");
+    assert!(
+        soil.map(|value| format!("| {value:.4} (twenty elements) |")).any(|cell| other.ends_with(&cell)),
+        "{other}"
+    );
 }
 
 #[test]

@@ -130,9 +130,12 @@ fn records_survive_writing_and_reading_and_state_what_is_missed() {
     let read: Record = serde_json::from_str(&report::json(&record)).expect("a record");
     assert_eq!(read, record);
     let document = report::document(&record);
-    for part in
-        ["**MISSED** B2, a|b: no number, should be 1", "| a\\|b | no number | 1 | – | 0.5 | **MISSED** |", "no model"]
-    {
+    for part in [
+        "**MISSED** B2, a|b: no number, should be 1",
+        "| a\\|b | no number | 1 | – | 0.5 (1) | **MISSED** |",
+        "Tolerances: (1) it must be near.",
+        "no model",
+    ] {
         assert!(document.contains(part), "{part} is not in\n{document}");
     }
     assert!(report::new_misses(&record, &record).is_empty());

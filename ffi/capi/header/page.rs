@@ -1,8 +1,9 @@
 //! The page of all numbers that outputs show, written from the tables of quantities.
 
 use enmm_observe::{
-    BLOCK_QUANTITIES, BOLT_QUANTITIES, ENERGIES, FLOW_QUANTITIES, INLET_QUANTITIES, JOINT_QUANTITIES,
-    MONITOR_QUANTITIES, PORT_QUANTITIES, Quantity, REPORT_QUANTITIES, STRENGTH_QUANTITIES, STRESS_QUANTITIES, TOTALS,
+    BLOCK_QUANTITIES, BOLT_QUANTITIES, ENERGIES, FLOW_QUANTITIES, INLET_QUANTITIES, JOINT_MONITOR_QUANTITIES,
+    JOINT_QUANTITIES, MONITOR_QUANTITIES, MONITOR_STRESS_QUANTITIES, PORT_QUANTITIES, Quantity, REPORT_QUANTITIES,
+    STRENGTH_QUANTITIES, STRESS_QUANTITIES, TOTALS,
 };
 
 /// Path of the page in the repository.
@@ -55,13 +56,7 @@ pub fn page() -> String {
         "",
         &PORT_QUANTITIES,
     );
-    page += &part(
-        "Monitors",
-        "Members of `enmm_monitor_state`, fields of `Model.monitor()`; variables of FMUs with `monitor.`, the name of \
-         the monitor and a dot before them.",
-        "column of `history.csv` behind the name",
-        &MONITOR_QUANTITIES,
-    );
+    page += &monitors();
     page += &part(
         "Heads, rain and drains",
         "Water that flows in joints: members of `enmm_inlet_state`, fields of what `Model.head`, `Model.rain` and \
@@ -75,6 +70,35 @@ pub fn page() -> String {
     page +=
         &part("Water in joints", "Numbers of a piece of joint in which water flows, in frames.", "", &FLOW_QUANTITIES);
     page += &part("Bolts", "Numbers of a free length of a bolt in frames and pictures.", "", &BOLT_QUANTITIES);
+    page
+}
+
+/// The parts about monitors.
+fn monitors() -> String {
+    let mut page = part(
+        "Monitors",
+        "Members of `enmm_monitor_state`, fields of `Model.monitor()`; variables of FMUs with `monitor.`, the name of \
+         the monitor and a dot before them.",
+        "column of `history.csv` behind the name",
+        &MONITOR_QUANTITIES,
+    );
+    page += &part(
+        "Stress at monitors",
+        "Of monitors with `stress = true`: columns of `history.csv` behind the name, members of `enmm_monitor_stress`, \
+         fields of `Model.monitor_stress()`; variables of FMUs with `monitor.`, the name of the monitor and a dot \
+         before them. It is the value at the point of the plane that fits best, by area, the stresses of those \
+         elements of its block and rock that share a cover with its own. NaN where the rock has been excavated.",
+        "",
+        &MONITOR_STRESS_QUANTITIES,
+    );
+    page += &part(
+        "Monitors of joints",
+        "Columns of `history.csv` behind the name, members of `enmm_joint_monitor_state`, fields of \
+         `Model.joint_monitor()`; variables of FMUs with `joint_monitor.`, the name of the monitor and a dot before \
+         them. NaN where a side of the joint has been excavated.",
+        "",
+        &JOINT_MONITOR_QUANTITIES,
+    );
     page
 }
 

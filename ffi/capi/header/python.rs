@@ -13,7 +13,7 @@ const BLOCKS: &str = "enmm_block_state";
 const UNSEEN: [&str; 2] = ["struct_size", "reserved"];
 
 /// Structures that models give as tuples with names.
-const TUPLES: [&str; 8] = [
+const TUPLES: [&str; 10] = [
     "enmm_start_info",
     "enmm_progress",
     "enmm_step_info",
@@ -21,6 +21,8 @@ const TUPLES: [&str; 8] = [
     "enmm_totals",
     "enmm_port_state",
     "enmm_monitor_state",
+    "enmm_monitor_stress",
+    "enmm_joint_monitor_state",
     "enmm_inlet_state",
 ];
 

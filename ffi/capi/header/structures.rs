@@ -1,7 +1,9 @@
 //! Structures of the header whose members are rows of the engine's tables of quantities.
 
 use engine::cosimulation::{PORT_QUANTITIES, Quantity, TOTALS};
-use engine::model::{BLOCK_QUANTITIES, INLET_QUANTITIES, MONITOR_QUANTITIES};
+use engine::model::{
+    BLOCK_QUANTITIES, INLET_QUANTITIES, JOINT_MONITOR_QUANTITIES, MONITOR_QUANTITIES, MONITOR_STRESS_QUANTITIES,
+};
 
 use super::layout::{self, Kind};
 
@@ -44,6 +46,10 @@ A port now. A block fills all from its displacement to its stress; a boundary di
 /// of a block are those of its mass centroid, of a boundary the mean along it.";
 const MONITOR: &str = "\
 A monitor now. Its velocity is that of half an internal step ago.";
+const MONITOR_STRESS: &str = "\
+Stress at a monitor now, of the plane through the stresses of the elements about it.";
+const JOINT_MONITOR: &str = "\
+A monitor of a joint now. Slip and shear stress are positive where the far side goes, or is pushed, to the right.";
 const INLET: &str = "\
 Water at a head, in rain or at a drain, as the flow was found last.";
 const HEAD: &str = "\
@@ -61,6 +67,8 @@ pub fn source() -> String {
         + &source("enmm_totals", TOTALS_TEXT, HEAD, &members(TOTALS.iter()))
         + &source("enmm_port_state", PORT, HEAD, &members(PORT_QUANTITIES.iter()))
         + &source("enmm_monitor_state", MONITOR, HEAD, &members(MONITOR_QUANTITIES.iter()))
+        + &source("enmm_monitor_stress", MONITOR_STRESS, HEAD, &members(MONITOR_STRESS_QUANTITIES.iter()))
+        + &source("enmm_joint_monitor_state", JOINT_MONITOR, HEAD, &members(JOINT_MONITOR_QUANTITIES.iter()))
         + &source("enmm_inlet_state", INLET, HEAD, &members(INLET_QUANTITIES.iter()))
 }
 

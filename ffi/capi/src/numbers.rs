@@ -3,7 +3,8 @@
 
 use engine::cosimulation::{PORT_QUANTITIES, PortState, Quantity, TOTALS, Totals};
 use engine::model::{
-    BLOCK_QUANTITIES, BlockState, ENERGIES, INLET_QUANTITIES, InletState, Ledger, MONITOR_QUANTITIES, MonitorState,
+    BLOCK_QUANTITIES, BlockState, ENERGIES, INLET_QUANTITIES, InletState, JOINT_MONITOR_QUANTITIES, JointMonitorState,
+    Ledger, MONITOR_QUANTITIES, MONITOR_STRESS_QUANTITIES, MonitorState, Stress,
 };
 
 use crate::layout::{Kind, energies};
@@ -59,6 +60,24 @@ pub struct enmm_monitor_state {
     numbers: [u64; MONITOR_QUANTITIES.len()],
 }
 
+/// Stress at a monitor now.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_monitor_stress {
+    /// Size of this structure (bytes).
+    pub struct_size: usize,
+    numbers: [u64; MONITOR_STRESS_QUANTITIES.len()],
+}
+
+/// A monitor of a joint now.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct enmm_joint_monitor_state {
+    /// Size of this structure (bytes).
+    pub struct_size: usize,
+    numbers: [u64; JOINT_MONITOR_QUANTITIES.len()],
+}
+
 /// Water at a head, in rain or at a drain.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +93,8 @@ sized! {
     enmm_totals 72 { struct_size numbers }
     enmm_port_state 120 { struct_size numbers }
     enmm_monitor_state 40 { struct_size numbers }
+    enmm_monitor_stress 56 { struct_size numbers }
+    enmm_joint_monitor_state 40 { struct_size numbers }
     enmm_inlet_state 32 { struct_size numbers }
 }
 
@@ -113,6 +134,18 @@ impl From<&PortState> for enmm_port_state {
 impl From<&MonitorState> for enmm_monitor_state {
     fn from(monitor: &MonitorState) -> Self {
         Self { struct_size: size_of::<Self>(), numbers: words(MONITOR_QUANTITIES.iter(), monitor) }
+    }
+}
+
+impl From<&Stress> for enmm_monitor_stress {
+    fn from(stress: &Stress) -> Self {
+        Self { struct_size: size_of::<Self>(), numbers: words(MONITOR_STRESS_QUANTITIES.iter(), stress) }
+    }
+}
+
+impl From<&JointMonitorState> for enmm_joint_monitor_state {
+    fn from(joint: &JointMonitorState) -> Self {
+        Self { struct_size: size_of::<Self>(), numbers: words(JOINT_MONITOR_QUANTITIES.iter(), joint) }
     }
 }
 

@@ -138,6 +138,8 @@ pub enum enmm_name_kind {
     ENMM_NAME_RAIN = 8,
     /// A drain, in the order of the case.
     ENMM_NAME_DRAIN = 9,
+    /// A place on a joint that the case names by `[[joint_monitor]]`, in its order.
+    ENMM_NAME_JOINT_MONITOR = 10,
 }
 
 /// State of a contact.

@@ -4,7 +4,10 @@ use enmm::cosimulation::limits::{ACCELERATION_MAX, FACTOR_MAX, LEVEL_MAX, RAIN_M
 use enmm::cosimulation::{Named, PORT_QUANTITIES, Parameter, PortKind, TOTALS, parameters};
 use enmm::model::case::Port;
 use enmm::model::case::keys::Plain;
-use enmm::model::{BLOCK_QUANTITIES, BlockState, Case, ENERGIES, INLET_QUANTITIES, MONITOR_QUANTITIES};
+use enmm::model::{
+    BLOCK_QUANTITIES, BlockState, Case, ENERGIES, INLET_QUANTITIES, JOINT_MONITOR_QUANTITIES, MONITOR_QUANTITIES,
+    MONITOR_STRESS_QUANTITIES,
+};
 use uuid::Uuid;
 
 /// Version of the standard.
@@ -130,6 +133,10 @@ pub enum Quantity {
     Port(usize, usize),
     /// Output of a monitor: its place in [`MONITOR_QUANTITIES`].
     Monitor(usize, usize),
+    /// Stress at a monitor: its place in [`MONITOR_STRESS_QUANTITIES`].
+    MonitorStress(usize, usize),
+    /// Output of a monitor of a joint: its place in [`JOINT_MONITOR_QUANTITIES`].
+    JointMonitor(usize, usize),
     /// Output of the whole model.
     Total(Total),
     /// Output of all blocks: its place in [`BLOCK_QUANTITIES`].
@@ -143,7 +150,8 @@ impl Quantity {
     /// the next step. Everything but the snapshot is such, which holds the inputs.
     pub fn is_of_state(self) -> bool {
         let of_places = matches!(self, Self::Port(..) | Self::Monitor(..) | Self::Inlet(..));
-        of_places || matches!(self, Self::Blocks(_) | Self::Block(..) | Self::Total(_))
+        let of_gauges = matches!(self, Self::MonitorStress(..) | Self::JointMonitor(..));
+        of_places || of_gauges || matches!(self, Self::Blocks(_) | Self::Block(..) | Self::Total(_))
     }
 }
 
@@ -543,12 +551,31 @@ impl Rows {
                 self.output(&name, &what, quantity.unit, Quantity::Monitor(k, place));
             }
         }
+        self.gauges(case);
         let Rowed { first, later, .. } = totals();
         first.into_iter().for_each(|total| self.total(total));
         if version == Version::Three {
             self.block_outputs();
         }
         later.into_iter().for_each(|total| self.total(total));
+    }
+
+    /// Outputs of monitors of stress and of joints.
+    fn gauges(&mut self, case: &Case) {
+        for (k, monitor) in case.monitors.iter().enumerate().filter(|(_, monitor)| monitor.stress) {
+            for (place, quantity) in MONITOR_STRESS_QUANTITIES.iter().enumerate() {
+                let name = format!("monitor.{}.{}", monitor.name, quantity.name);
+                let what = format!("{}, monitor {}", quantity.text, monitor.name);
+                self.output(&name, &what, quantity.unit, Quantity::MonitorStress(k, place));
+            }
+        }
+        for (k, monitor) in case.joint_monitors.iter().enumerate() {
+            for (place, quantity) in JOINT_MONITOR_QUANTITIES.iter().enumerate() {
+                let name = format!("joint_monitor.{}.{}", monitor.name, quantity.name);
+                let what = format!("{}, joint monitor {}", quantity.text, monitor.name);
+                self.output(&name, &what, quantity.unit, Quantity::JointMonitor(k, place));
+            }
+        }
     }
 
     /// Inputs and outputs of water that flows in joints, behind all that other cases have.

@@ -42,7 +42,20 @@ from ._batch import Rollout, batch_step, rollout
 from ._case import Case
 from ._data import examples, schema
 from ._document import document
-from ._doors import Imported, Report, Samples, Stereonet, fmu, import_drawing, new, report, sample, stereonet
+from ._doors import (
+    Imported,
+    Report,
+    Samples,
+    Stereonet,
+    Sweep,
+    fmu,
+    import_drawing,
+    new,
+    report,
+    sample,
+    stereonet,
+    sweep,
+)
 from ._errors import (
     BufferTooSmallError,
     BusyError,
@@ -69,12 +82,24 @@ from ._model import BLOCK_DTYPE, CONTACT_DTYPE, Model, State
 from ._parameters import Parameter, Parameters
 from ._ports import Port, Ports
 from ._program import program
-from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, MemoryPart
+from ._records import Bound, Check, Collapse, EnsembleRecord, MechanismBlock, MemoryPart, SweepRecord
 from ._results import Fos, Result, RunError
 from ._table import Table
 from ._tasks import bound, check, fos, run
 from ._types import Cut, Event, FlowInputs, Inputs, PortInputs
-from ._values import BLOCK_FIELDS, Energies, InletState, MonitorState, PortState, Progress, StartInfo, StepInfo, Totals
+from ._values import (
+    BLOCK_FIELDS,
+    Energies,
+    InletState,
+    JointMonitorState,
+    MonitorState,
+    MonitorStress,
+    PortState,
+    Progress,
+    StartInfo,
+    StepInfo,
+    Totals,
+)
 
 __version__ = "0.1.0"
 
@@ -122,6 +147,7 @@ __all__ = [
     "Inputs",
     "Interpolation",
     "InvalidArgumentError",
+    "JointMonitorState",
     "Library",
     "LibraryError",
     "LogLevel",
@@ -129,6 +155,7 @@ __all__ = [
     "MemoryPart",
     "Model",
     "MonitorState",
+    "MonitorStress",
     "NameKind",
     "NotFoundError",
     "NullArgumentError",
@@ -154,6 +181,8 @@ __all__ = [
     "StepError",
     "StepInfo",
     "Stereonet",
+    "Sweep",
+    "SweepRecord",
     "Table",
     "TimeError",
     "Totals",
@@ -174,4 +203,5 @@ __all__ = [
     "sample",
     "schema",
     "stereonet",
+    "sweep",
 ]

@@ -152,6 +152,8 @@ class NameKind(IntEnum):
     """Rain on joints, in the order of the case."""
     DRAIN = 9
     """A drain, in the order of the case."""
+    JOINT_MONITOR = 10
+    """A place on a joint that the case names by `[[joint_monitor]]`, in its order."""
 
 
 class StartInfo(ctypes.Structure):
@@ -216,6 +218,32 @@ class MonitorState(ctypes.Structure):
         ("displacement_y", c_double),
         ("velocity_x", c_double),
         ("velocity_y", c_double),
+    ]
+
+
+class MonitorStress(ctypes.Structure):
+    """`enmm_monitor_stress`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("stress_xx", c_double),
+        ("stress_yy", c_double),
+        ("stress_xy", c_double),
+        ("principal_max", c_double),
+        ("principal_min", c_double),
+        ("principal_angle", c_double),
+    ]
+
+
+class JointMonitorState(ctypes.Structure):
+    """`enmm_joint_monitor_state`."""
+
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("opening", c_double),
+        ("slip", c_double),
+        ("normal_stress", c_double),
+        ("shear_stress", c_double),
     ]
 
 
@@ -414,6 +442,8 @@ STRUCTURES: dict[str, type[ctypes.Structure]] = {
     "enmm_progress": Progress,
     "enmm_inlet_state": InletState,
     "enmm_monitor_state": MonitorState,
+    "enmm_monitor_stress": MonitorStress,
+    "enmm_joint_monitor_state": JointMonitorState,
     "enmm_block_state": BlockState,
     "enmm_energies": Energies,
     "enmm_totals": Totals,
@@ -498,6 +528,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "enmm_find_name": (c_int32, [c_void_p, c_int32, c_char_p, POINTER(c_uint32)]),
     "enmm_get_inlet_state": (c_int32, [c_void_p, c_int32, c_uint32, POINTER(InletState)]),
     "enmm_get_monitor_state": (c_int32, [c_void_p, c_uint32, POINTER(MonitorState)]),
+    "enmm_get_monitor_stress": (c_int32, [c_void_p, c_uint32, POINTER(MonitorStress)]),
+    "enmm_get_joint_monitor_state": (c_int32, [c_void_p, c_uint32, POINTER(JointMonitorState)]),
     "enmm_block_count": (c_int32, [c_void_p, POINTER(c_size_t)]),
     "enmm_get_block_states": (c_int32, [c_void_p, POINTER(BlockState), c_size_t, POINTER(c_size_t)]),
     "enmm_view_block_states": (c_int32, [c_void_p, POINTER(c_void_p), POINTER(c_size_t), POINTER(c_size_t)]),

@@ -1,20 +1,20 @@
-"""Other commands of the program as functions: new cases, drawings, FMUs, reports, stereonets, samples."""
+"""Other commands of the program as functions: new cases, drawings, FMUs, reports, stereonets, samples, sweeps."""
 
 import html
 import json
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self, cast
 
 from . import _html
 from ._case import Case
-from ._errors import CaseFileError, Status, warn
+from ._errors import CaseFileError, Status, invalid, warn
 from ._options import number, real, whole, word, words
 from ._options import path as path_of
 from ._program import CaseLike, case_file, printed, record
-from ._records import EnsembleRecord
+from ._records import EnsembleRecord, SweepRecord
 from ._results import Directory
 from ._table import Table
 from ._tasks import search_options
@@ -103,7 +103,7 @@ def report(
 ) -> Report:
     """Writes a report of results for paper into their directory, as `enmm report` does.
 
-    `directory` is that of `run`, `fos`, `bound` or `sample`; those in its directories `fos`, `bound` and `sample` count
+    `directory` is that of `run`, `fos`, `bound`, `sample` or `sweep`; those in its directories of these names count
     too. `converter` makes the PDF: a browser of the family of Chromium, weasyprint or wkhtmltopdf, by default the first
     that is installed.
     """
@@ -218,10 +218,119 @@ def sample(
     with case_file(case) as path:
         record(["sample", path, "-o", directory, *words(options)], timeout=timeout)
     found = found._read() if found else Samples(directory)
-    of = found.record["samples"]
+    _warn(cast(dict[str, Any], found.record), found.record["samples"])
+    return found
+
+
+def _warn(record: dict[str, Any], count: int) -> None:
+    """Warns of samples without an answer and of factors above their bound."""
     kinds = {"samples have no answer": "without_answer", "factors are above the bound of limit analysis": "doubtful"}
-    lists = [(text, cast(dict[str, Any], found.record)[name]) for text, name in kinds.items()]
-    warn(f"{len(those)} of {of} {text}" for text, those in lists if those)
+    lists = [(text, record[name]) for text, name in kinds.items()]
+    warn(f"{len(those)} of {count} {text}" for text, those in lists if those)
+
+
+class Sweep(Directory):
+    """Factors, or displacements, over values of keys: what `sweep` found, or any directory that `enmm sweep` wrote."""
+
+    record: SweepRecord
+    """`sweep.json`."""
+    table: Table
+    """`sweep.csv`: the samples that have an answer, with their values and outputs."""
+    _record = "sweep.json"
+
+    def _read(self) -> Self:
+        self.record = json.loads((self.directory / self._record).read_text(encoding="utf-8"))
+        self.table = Table.read_csv(self.directory / "sweep.csv")
+        return self
+
+    @property
+    def keys(self) -> list[str]:
+        """The keys of the case whose values were swept."""
+        return [key["key"] for key in self.record["keys"]]
+
+    @property
+    def outputs(self) -> list[float | None]:
+        """Output of each sample, in the order of `record["samples"]`; None without an answer."""
+        name = self.record["output"]
+        return [sample.get(name) for sample in self.record["samples"]]
+
+    @property
+    def crossings(self) -> list[dict[str, Any]]:
+        """Where the output passes the limit; empty where it does not, and of changes one by one."""
+        return list(self.record.get("crossings", []))
+
+    @property
+    def effects(self) -> list[dict[str, Any]]:
+        """Effects of changes one by one, the greatest first; empty of a curve or a contour."""
+        return list(self.record.get("effects", []))
+
+    @property
+    def crossing(self) -> float | None:
+        """The value at which a curve passes the limit; None where it does not, or more than once."""
+        found = self.crossings
+        value = found[0]["value"] if len(found) == 1 and self.record["kind"] == "curve" else None
+        return None if value is None else float(value)
+
+    def _repr_html_(self) -> str:
+        rows = [("values of", ", ".join(self.keys)), ("samples", str(len(self.record["samples"])))]
+        rows += [("passes the limit at", f"{found['value']:g}") for found in self.crossings if found["value"] is not None]
+        return _html.facts(rows) + _html.picture(self.directory / "sweep.png", "Output over the values")
+
+    def __repr__(self) -> str:
+        found = [output for output in self.outputs if output is not None]
+        return f"<enmm.Sweep of {', '.join(self.keys)}: {min(found):.4g} to {max(found):.4g} in {len(found)} samples>"
+
+
+def sweep(
+    case: CaseLike,
+    values: Mapping[str, Iterable[float]],
+    output: str | os.PathLike[str] | None = None,
+    *,
+    of: str = "bound",
+    one_by_one: bool = False,
+    jobs: int | None = None,
+    store: str | os.PathLike[str] | None = None,
+    low: float | None = None,
+    high: float | None = None,
+    tolerance: float | None = None,
+    least_area: float | None = None,
+    retry_failed: bool = False,
+    overwrite: bool = False,
+    timeout: float | None = None,
+) -> Sweep:
+    """Finds the factor of safety of a case over values of its keys, as `enmm sweep` does.
+
+    `values` maps keys to numbers, such as `{"joint_law.fault.friction_deg": range(20, 41)}`: one key makes a curve, two
+    make a contour, and `one_by_one` changes each alone. `of` is the command whose result each sample gets: "bound"
+    (limit analysis), "fos" (strength reduction) or "run" (largest displacement of the last stage, and whether the slope
+    fails). `low`, `high`, `tolerance` and `least_area` are for "fos". Other arguments are as those of `sample`. Samples
+    without an answer, and factors above a bound, are an EnmmWarning. Raises CaseError for a value that the case cannot
+    have.
+    """
+    options: dict[str, Any] = {"of": word("of", of, ("bound", "fos", "run")), "one-by-one": one_by_one}
+    options |= {"jobs": whole("jobs", jobs, 1, 1024), "store": None if store is None else path_of("store", store)}
+    options |= search_options(low, high, tolerance, least_area)
+    options |= {"retry-failed": retry_failed, "force": overwrite}
+    changes = [f"{key}={','.join(_numbers(key, those))}" for key, those in values.items()]
+    if not changes:
+        raise invalid("values: is empty, must have at least 1 key; give one with its numbers")
+    found = Sweep(None) if output is None else None
+    directory = found.directory if found else path_of("output", output or "")
+    with case_file(case) as path:
+        record(["sweep", path, *changes, "-o", directory, *words(options)], timeout=timeout)
+    found = found._read() if found else Sweep(directory)
+    _warn(cast(dict[str, Any], found.record), len(found.record["samples"]))
+    return found
+
+
+def _numbers(key: str, values: Iterable[Any]) -> list[str]:
+    """Numbers with all of their digits, each once; whole ones as such, since seeds and counts take no others."""
+    name = f"values[{key!r}]"
+    found = [str(int(value)) if number(name, value).is_integer() else repr(number(name, value)) for value in values]
+    twice = next((text for k, text in enumerate(found) if text in found[:k]), None)
+    if not found or twice is not None:
+        what = "is empty, must have at least 1 number" if not found else f"has {twice} twice; give each number once"
+        raise invalid(f"{name}: {what}")
     return found
 
 

@@ -25,7 +25,16 @@ from ._options import number, numbers, path
 from ._parameters import Parameters
 from ._ports import Port, Ports
 from ._types import CUT_FIELDS, Cut, Event, FlowInputs, Inputs, PortInputs
-from ._values import Energies, InletState, MonitorState, StartInfo, StepInfo, Totals
+from ._values import (
+    Energies,
+    InletState,
+    JointMonitorState,
+    MonitorState,
+    MonitorStress,
+    StartInfo,
+    StepInfo,
+    Totals,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -612,6 +621,24 @@ class Model(Closing):
         of = self._named(NameKind.MONITOR, monitor) if isinstance(monitor, str) else index("monitor", monitor)
         raw = self._core.read("enmm_get_monitor_state", _abi.MonitorState, of)
         return MonitorState(*(getattr(raw, name) for name in MonitorState._fields))
+
+    def monitor_stress(self, monitor: str | SupportsIndex) -> MonitorStress:
+        """Stress at a monitor of the case with `stress = true`; NaN where the rock has been excavated.
+
+        Raises NotFoundError for another name, InvalidArgumentError for a monitor that reads no stress.
+        """
+        of = self._named(NameKind.MONITOR, monitor) if isinstance(monitor, str) else index("monitor", monitor)
+        raw = self._core.read("enmm_get_monitor_stress", _abi.MonitorStress, of)
+        return MonitorStress(*(getattr(raw, name) for name in MonitorStress._fields))
+
+    def joint_monitor(self, monitor: str | SupportsIndex) -> JointMonitorState:
+        """State of a monitor of a joint, by its name or its place in the case; NaN where a side has been excavated.
+
+        Raises NotFoundError for another name.
+        """
+        of = self._named(NameKind.JOINT_MONITOR, monitor) if isinstance(monitor, str) else index("monitor", monitor)
+        raw = self._core.read("enmm_get_joint_monitor_state", _abi.JointMonitorState, of)
+        return JointMonitorState(*(getattr(raw, name) for name in JointMonitorState._fields))
 
     def head(self, head: str | SupportsIndex) -> InletState:
         """Water that flows at a head of the case, by its name or its place there. Raises NotFoundError."""

@@ -189,3 +189,28 @@ class EnsembleRecord(TypedDict):
     """Shares, and the outputs below which they lie."""
     rank_correlation: dict[str, float | None]
     """Rank correlation of the output with each key."""
+
+
+class SweepRecord(TypedDict):
+    """What `enmm sweep` found."""
+
+    kind: str
+    """`curve`, `contour` or `tornado`."""
+    output: str
+    """Name of the output of each sample: `level_tops`, `factor_of_safety` or `displacement`."""
+    limit: float
+    """Factor below which a slope counts as failed."""
+    keys: list[dict[str, Any]]
+    """Keys with their values: `key`, `values`."""
+    samples: list[dict[str, Any]]
+    """Samples: `values` by their keys, the output by its name, `status`."""
+    without_answer: list[dict[str, Any]]
+    """Samples whose case has no answer: `sample`, `message`."""
+    doubtful: list[dict[str, Any]]
+    """Samples whose factor is above the bound of limit analysis."""
+    crossings: NotRequired[list[dict[str, Any]]]
+    """Where the limit is passed: `value`, its neighbours `between`, of a contour the second value `at`."""
+    of_the_case: NotRequired[float | None]
+    """Output of the case itself, of changes one by one."""
+    effects: NotRequired[list[dict[str, Any]]]
+    """Effects of changes one by one: `key`, `outputs` as pairs of value and output, `range`."""

@@ -140,6 +140,8 @@ class Result(Directory):
     """`history.csv`: time, monitored quantities and energies."""
     blocks: Table
     """`blocks.csv`: the blocks at the end."""
+    lines: Table | None
+    """`lines.csv`: the points of all lines at the end of each stage; None when the case has no `[[line]]`."""
     frames: Frames
     """Elements at every time that the case asks for; empty with `output.frames = false`."""
 
@@ -149,6 +151,8 @@ class Result(Directory):
         self.summary = json.loads((self.directory / "summary.json").read_text(encoding="utf-8"))
         self.history = Table.read_csv(self.directory / "history.csv")
         self.blocks = Table.read_csv(self.directory / "blocks.csv")
+        lines = self.directory / "lines.csv"
+        self.lines = Table.read_csv(lines) if lines.is_file() else None
         self.frames = Frames(self.directory / "run.pvd", _Seal(self.directory, self.summary["case_hash"]))
         return self
 

@@ -221,6 +221,39 @@ class MonitorState(NamedTuple):
     """Velocity, y up (m/s)."""
 
 
+class MonitorStress(NamedTuple):
+    """Stress at a monitor now, of the plane through the stresses of the elements about it."""
+
+    stress_xx: float
+    """Stress xx, tension positive (Pa)."""
+    stress_yy: float
+    """Stress yy, tension positive (Pa)."""
+    stress_xy: float
+    """Stress xy (Pa)."""
+    principal_max: float
+    """Greatest principal stress in the plane (Pa)."""
+    principal_min: float
+    """Least principal stress in the plane: the greatest compression (Pa)."""
+    principal_angle: float
+    """Direction of the greatest compression from the x axis, counter-clockwise (rad)."""
+
+
+class JointMonitorState(NamedTuple):
+    """A monitor of a joint now.
+
+    Slip and shear stress are positive where the far side goes, or is pushed, to the right.
+    """
+
+    opening: float
+    """Opening at the place, apart positive (m)."""
+    slip: float
+    """Slip along the joint, far side to the right positive (m)."""
+    normal_stress: float
+    """Normal stress between the faces, tension positive (Pa)."""
+    shear_stress: float
+    """Shear stress between the faces, as the slip (Pa)."""
+
+
 class InletState(NamedTuple):
     """Water at a head, in rain or at a drain, as the flow was found last."""
 

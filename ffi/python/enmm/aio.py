@@ -16,7 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 from . import _doors, _tasks
 from ._program import LEASH, Leash
 
-__all__ = ["bound", "check", "fos", "run", "sample"]
+__all__ = ["bound", "check", "fos", "run", "sample", "sweep"]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -48,3 +48,4 @@ fos = _asynchronous(_tasks.fos)
 bound = _asynchronous(_tasks.bound)
 check = _asynchronous(_tasks.check)
 sample = _asynchronous(_doors.sample)
+sweep = _asynchronous(_doors.sweep)

@@ -1,9 +1,10 @@
 //! Bolts of a case: the free lengths of their bars, found on the uncut reference.
 
-use crate::contact::BoltSegment;
-use crate::cover::ElementId;
+use crate::contact::{BoltSegment, Grout};
+use crate::cover::{BlockId, ElementId};
 use crate::geometry::{Point, Vector};
 use crate::model::case::{Anchorage, Bolt, Case, Invalid};
+use crate::state::Model;
 
 use super::locator::Locator;
 
@@ -13,6 +14,14 @@ const FREE_LENGTH: f64 = 0.1;
 const RUPTURE_STRAIN: f64 = 0.1;
 /// Distance, relative to the mesh size, at which the rock on both sides of a crossing is looked up.
 const BESIDE: f64 = 1e-3;
+/// Longest distance of the points of a bar with a bond, relative to the mesh size and to √(EA/stiffness of the bond),
+/// over which its force falls to 1/e; and most points.
+const POINTS: [f64; 2] = [0.5, 0.2];
+const POINTS_MAX: usize = 2000;
+/// Stiffness of a plate at the head, relative to that of the bar between its first two points.
+const PLATE: f64 = 1e3;
+/// Share of the longest stable step that a bond may need.
+const STABLE: f64 = 0.5;
 
 /// Segments of all bolts, and what the user should know of them.
 pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment>, Vec<String>), Invalid> {
@@ -22,7 +31,7 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
         match bolt.anchorage {
             Anchorage::Ends => {
                 let block = |end: usize| positions.covers.element_block[line.elements[end]];
-                if block(0) == block(1) && line.meetings.is_empty() {
+                if block(0) == block(1) && line.meetings.is_empty() && !bolt.of_skin {
                     warnings.push(format!(
                         "{}: both ends lie in one block and the bolt crosses no joint, so that it holds nothing: move \
                          its points to both sides of a joint",
@@ -30,6 +39,10 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
                     ));
                 }
                 segments.push(line.whole(k as u32, bolt));
+            }
+            Anchorage::Grouted if bolt.bond.is_some() => {
+                segments.extend(line.bonded(k as u32, bolt)?);
+                warnings.extend(line.outside_warning(case, k));
             }
             Anchorage::Grouted => {
                 let crossings = line.crossings();
@@ -44,11 +57,7 @@ pub(super) fn bolts(case: &Case, positions: &Locator) -> Result<(Vec<BoltSegment
                     });
                 }
                 segments.extend(crossings.iter().map(|c| line.bridge(k as u32, bolt, c)));
-                let outside = line.outside();
-                if outside > 0.0 {
-                    let name = case.bolt_name(k);
-                    warnings.push(format!("{outside:.3} m of the grouted bolt {name:?} lie outside the rock"));
-                }
+                warnings.extend(line.outside_warning(case, k));
             }
         }
     }
@@ -136,12 +145,66 @@ impl<'a> Line<'a> {
         crossings
     }
 
-    /// Length (m) of the bolt that lies in no rock.
-    fn outside(&self) -> f64 {
+    /// Parts between joints and outlines: distances from the head (m) at both ends.
+    fn parts(&self) -> Vec<[f64; 2]> {
         let stations: Vec<f64> =
             std::iter::once(0.0).chain(self.meetings.iter().map(|m| m.0)).chain([self.length]).collect();
-        let gaps = stations.windows(2).filter(|pair| pair[1] - pair[0] > 2.0 * self.positions.tolerance);
-        gaps.filter(|pair| self.element_at(0.5 * (pair[0] + pair[1])).is_none()).map(|pair| pair[1] - pair[0]).sum()
+        let parts = stations.windows(2).map(|pair| [pair[0], pair[1]]);
+        parts.filter(|[from, to]| to - from > 2.0 * self.positions.tolerance).collect()
+    }
+
+    /// A warning of the length of the bolt that lies in no rock.
+    fn outside_warning(&self, case: &Case, bolt: usize) -> Option<String> {
+        let parts = self.parts().into_iter().filter(|[from, to]| self.element_at(0.5 * (from + to)).is_none());
+        let outside: f64 = parts.map(|[from, to]| to - from).sum();
+        let name = case.bolt_name(bolt);
+        (outside > 0.0).then(|| format!("{outside:.3} m of the grouted bolt {name:?} lie outside the rock"))
+    }
+
+    /// Segments between points along the bar, each in the middle of a length that grout ties to the rock; the first
+    /// one is the head where that has a plate.
+    fn bonded(&self, index: u32, bolt: &Bolt) -> Result<Vec<BoltSegment>, Invalid> {
+        let [strength, stiffness] = [bolt.bond, bolt.bond_stiffness].map(Option::unwrap_or_default);
+        let reach = (bolt.young * bolt.area / stiffness).sqrt();
+        let longest = (POINTS[0] * self.positions.covers.mesh.size).min(POINTS[1] * reach);
+        if self.length / longest > POINTS_MAX as f64 {
+            let message = format!(
+                "is {stiffness:.3e} N/m per metre, so that the force of the bar falls to 1/e within {reach:.2e} m, and \
+                 the bar would need more than {POINTS_MAX} points; lower it"
+            );
+            return Err(Invalid { key: format!("bolt[{index}].bond_stiffness"), message });
+        }
+        let mut points: Vec<(f64, ElementId, Grout)> = Vec::new();
+        if bolt.plate {
+            points.push((0.0, self.elements[0], Grout { stiffness: 0.0, strength: f64::INFINITY }));
+        }
+        for [from, to] in self.parts() {
+            let count = ((to - from) / longest).ceil().max(1.0);
+            let long = (to - from) / count;
+            let grout = Grout { stiffness: stiffness * long / bolt.spacing, strength: strength * long / bolt.spacing };
+            let middles = (0..count as usize).map(|k| from + (k as f64 + 0.5) * long);
+            points.extend(middles.filter_map(|along| Some((along, self.element_at(along)?, grout))));
+        }
+        if points.len() < 2 {
+            let message = "has fewer than two points in rock, so that it would do nothing: move its points into rock";
+            return Err(Invalid { key: format!("bolt[{index}].points"), message: message.into() });
+        }
+        let pairs = points.windows(2).enumerate();
+        let mut segments: Vec<BoltSegment> = pairs.map(|(k, pair)| self.tied(index, bolt, k > 0, pair)).collect();
+        if let Some(first) = segments.first_mut().filter(|_| bolt.plate) {
+            let stiffness = PLATE * first.stiffness;
+            first.grout = first.grout.map(|[head, next]| [Grout { stiffness, ..head }, next]);
+        }
+        Ok(segments)
+    }
+
+    /// A segment between two points along the bar.
+    fn tied(&self, index: u32, bolt: &Bolt, follows: bool, pair: &[(f64, ElementId, Grout)]) -> BoltSegment {
+        let covers = self.positions.covers;
+        let elements = [pair[0].1, pair[1].1].map(|e| covers.host[e]);
+        let points = [pair[0].0, pair[1].0].map(|along| self.at(along));
+        let segment = self.segment(index, bolt, elements, points, pair[1].0 - pair[0].0);
+        BoltSegment { grout: Some([pair[0].2, pair[1].2]), follows, ..segment }
     }
 
     /// One segment from end to end.
@@ -177,8 +240,49 @@ impl<'a> Line<'a> {
             rupture: rupture_strain(bolt).map_or(f64::INFINITY, |strain| strain * free_length),
             pretension: bolt.pretension / bolt.spacing,
             active: bolt.active,
+            grout: None,
+            follows: false,
         }
     }
+}
+
+/// Refuses bonds that are so stiff that the explicit step cannot follow them (Eq. 44d).
+///
+/// # Errors
+/// The first bolt that needs a shorter step.
+pub(super) fn check_step(case: &Case, model: &Model) -> Result<(), Invalid> {
+    let masses = &model.mass_matrix;
+    let (mut of_cover, mut of_block) = (vec![0.0; masses.mass.len()], vec![0.0; masses.total.len()]);
+    let mut points = Vec::new();
+    for segment in &model.bolts {
+        let Some(grout) = segment.grout else { continue };
+        for k in usize::from(segment.follows)..2 {
+            // A plate hardly moves against the bar, which is softer.
+            let stiffness = if grout[k].strength.is_finite() { grout[k].stiffness } else { segment.stiffness };
+            of_block[segment.blocks[k].index()] += stiffness;
+            for (&cover, weight) in segment.covers[k].iter().zip(segment.weights[k]) {
+                of_cover[cover.index()] += stiffness * weight.abs();
+            }
+            points.push((segment, k));
+        }
+    }
+    let square = |(segment, k): &(&BoltSegment, usize)| {
+        let block: BlockId = segment.blocks[*k];
+        let own = segment.covers[*k].iter().map(|&cover| of_cover[cover.index()] / masses.mass[cover.index()]);
+        own.fold(0.0, f64::max) + of_block[block.index()] * model.mass_scaling / masses.total[block]
+    };
+    let worst = points.iter().max_by(|a, b| square(a).total_cmp(&square(b)));
+    let Some(worst) = worst.filter(|worst| square(worst).sqrt() * model.dt > 2.0 * STABLE) else { return Ok(()) };
+    let least = (2.0 * STABLE / model.dt).powi(2) / square(worst);
+    let bolt = worst.0.bolt;
+    let stiffness = case.bolts[bolt as usize].bond_stiffness.unwrap_or_default();
+    let message = format!(
+        "is {stiffness:.3e} N/m per metre, and steps of {:.3e} s follow at most {:.3e} beside the rock of its lightest \
+         part: lower it, or `solver.dt_safety` (a quarter of the step allows sixteen times as much)",
+        model.dt,
+        least * stiffness
+    );
+    Err(Invalid { key: format!("bolt[{bolt}].bond_stiffness"), message })
 }
 
 /// Elongation at which a bar breaks: as given, else that of steel where it yields.

@@ -12,6 +12,7 @@ mod joints;
 mod locator;
 mod locked;
 mod memory;
+mod monitors;
 mod ports;
 mod quiet;
 mod rain;
@@ -25,7 +26,7 @@ use crate::contact::{
     BoltState, Boundary, DetectionRule, FoundContacts, JointLaw, LawId, Resistance, Roughness, Sections, Softening,
     Support,
 };
-use crate::cover::{self, BlockId, CoverId, Covers, Crumb, ElementId, Outlines};
+use crate::cover::{self, BlockId, CoverId, Covers, Crumb, Outlines};
 use crate::flow::FlowNet;
 use crate::geometry::ends::EndDistances;
 use crate::geometry::{NodingReport, Point, Vector, polygon};
@@ -33,6 +34,7 @@ use crate::mechanics::{
     Chunks, ColumnState, Elasticity, Load, LoadAction, MassMatrix, PreStress, StressField, TimeTable, critical_dt,
 };
 use crate::model::case::{self, Case, Invalid, LoadKind};
+use crate::monitor::Monitors;
 use crate::recut::keep_nodes;
 use crate::state::{
     Drive, Events, Fixity, Inputs, Model, OtherIntegrator, Port, QuietBoundary, State, Water, WorstSection,
@@ -55,8 +57,8 @@ pub use warnings::ignored_traces;
 pub struct Built {
     /// Fixed part.
     pub model: Model,
-    /// Element and reference point of each monitor.
-    pub monitors: Vec<(ElementId, Point)>,
+    /// Monitors and lines.
+    pub monitors: Monitors,
     /// Report of the noder.
     pub noding: NodingReport,
     /// Pieces of block boundaries inside single elements, both sides of a joint counted.
@@ -112,7 +114,7 @@ pub fn build(
     quiet::check_columns(&model)?;
     warnings::check_stages(case, &model)?;
     let positions = Locator { covers: &model.covers, outlines: &outlines, tolerance };
-    let monitors = monitors(case, &positions)?;
+    let monitors = monitors::place(case, &model, &positions, (&joints, cuts.len()))?;
     let state = initial_state(case, &model, &positions)?;
     warnings.extend(rock::overstressed(case, &model));
     warnings.extend(rock::coarse(case));
@@ -212,7 +214,7 @@ fn model(
         element_rock,
         covers,
     };
-    Ok((model, bolt_warnings))
+    bolts::check_step(case, &model).map(|()| (model, bolt_warnings))
 }
 
 /// Fixities and supports, how many of these are of fixities of the case, and the quiet boundaries.
@@ -451,14 +453,6 @@ fn loads(case: &Case, positions: &Locator, faces: &ports::Faces) -> Result<Vec<L
     Ok(loads)
 }
 
-fn monitors(case: &Case, positions: &Locator) -> Result<Vec<(ElementId, Point)>, Invalid> {
-    let of = |(k, monitor): (usize, &case::Monitor)| {
-        let element = positions.element(&format!("monitor[{k}].point"), monitor.point)?;
-        Ok((element, Point::from(monitor.point)))
-    };
-    case.monitors.iter().enumerate().map(of).collect()
-}
-
 /// Velocities (m/s) of the covers at the start.
 fn initial_velocity(case: &Case, model: &Model, positions: &Locator) -> Result<Vec<Vector>, Invalid> {
     let mut velocity = vec![Vector::zeros(); model.covers.cover_count()];
@@ -515,6 +509,7 @@ fn initial_state(case: &Case, model: &Model, positions: &Locator) -> Result<Stat
         damping: None,
         water_density: model.water_density(),
         seepage: None,
+        since: Vec::new(),
         stage_displacement: Vec::new(),
         stage_force: Vec::new(),
         drive: Drive::hold(Inputs::of(model)),

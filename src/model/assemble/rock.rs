@@ -4,9 +4,9 @@ use crate::contact::LawId;
 use crate::cover::{BlockId, Covers, ElementId};
 use crate::geometry::polygon;
 use crate::mechanics::{
-    Averaging, Criterion, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, RockStrength, YieldingRock,
+    Averaging, Criterion, Elasticity, HoekBrown, MohrCoulomb, PlasticStrain, RockStrength, Weakness, YieldingRock,
 };
-use crate::model::case::{self, Case, Invalid, Plane, Rock};
+use crate::model::case::{self, Case, Invalid, Plane, PlaneOfWeakness, Rock};
 use crate::state::{Breaking, BreakingRock, Model};
 
 use super::locator::Locator;
@@ -24,7 +24,20 @@ fn elasticity(rock: &Rock) -> Elasticity {
 pub(super) fn yielding(rock: &Rock) -> Option<YieldingRock> {
     let plane_stress = rock.plane == Plane::Stress;
     let (elasticity, criterion, is_porous) = (elasticity(rock), criterion(rock), rock.is_porous());
-    rock.yields().then_some(YieldingRock { elasticity, plane_stress, is_porous, criterion })
+    let weakness = rock.plane_of_weakness.as_ref().map(weakness);
+    rock.yields().then_some(YieldingRock { elasticity, plane_stress, is_porous, criterion, weakness })
+}
+
+fn weakness(plane: &PlaneOfWeakness) -> Weakness {
+    let tangent = |degrees: f64| libm::tan(degrees.to_radians());
+    let (sin, cos) = libm::sincos(plane.angle_deg.unwrap_or_default().to_radians());
+    Weakness {
+        direction: [cos, sin],
+        friction: tangent(plane.friction_deg),
+        cohesion: plane.cohesion,
+        dilation: tangent(plane.dilation_deg),
+        tension: plane.tension,
+    }
 }
 
 fn criterion(rock: &Rock) -> Criterion {

@@ -1,10 +1,11 @@
 //! The end of a sub-step: velocities, positions, contact histories and the ledger.
 
-use crate::contact::{BoltRow, BoltState, ContactState, Frames};
+use crate::contact::{BoltState, ContactState, Frames};
 use crate::geometry::Vector;
 use crate::mechanics::{self, MassMatrix};
 use crate::state::{
-    BoltEnergies, ChunkSums, Ledger, Model, MotionBuffers, SelectionBuffers, State, SweepBuffers, Workspace,
+    BoltEnergies, ChunkSums, Ledger, Model, MotionBuffers, SelectionBuffers, State, SupportBuffers, SweepBuffers,
+    Workspace,
 };
 
 use super::bonds::{Bonds, begin_sections, has_bonds};
@@ -52,7 +53,7 @@ pub(super) fn commit(model: &Model, state: &mut State, step: &Substep, workspace
     }
     turn(model, step, mass_matrix, &sweep.push, motion, &mut state.displacement, sums);
     quiet::move_supports(model, state, step);
-    settle_bolts(model, &supports.bolts, &state.displacement, &mut state.bolts);
+    settle_bolts(model, supports, &state.displacement, &mut state.bolts);
     std::mem::swap(&mut state.velocity, &mut motion.predicted);
     state.ledger.add_works(&works, 1.0);
     state.dt_last = step.dt;
@@ -107,14 +108,16 @@ fn drift(dt: f64, velocity: &[Vector], displacement: &mut [Vector], sums: &mut [
     sums.iter_mut().for_each(|sums| sums.is_near = false);
 }
 
-/// Keeps forces and lengths of the bolts that have carried force.
-fn settle_bolts(model: &Model, rows: &[BoltRow], displacement: &[Vector], bolts: &mut [BoltState]) {
-    for row in rows {
+/// Keeps forces and lengths of the bolts that have carried force, and brings grouted bars into balance.
+fn settle_bolts(model: &Model, supports: &mut SupportBuffers, displacement: &[Vector], bolts: &mut [BoltState]) {
+    let star = &model.covers.star_position;
+    for row in supports.bolts.iter().filter(|row| !row.stays) {
         let segment = &model.bolts[row.segment as usize];
         let bolt = &mut bolts[row.segment as usize];
-        let length = segment.span(&model.covers.star_position, displacement).norm();
+        let length = segment.span(star, displacement).norm();
         *bolt = segment.after(bolt, length, row.force);
     }
+    supports.grout.settle(&model.bolts, bolts, star, displacement);
 }
 
 /// Changes of the velocities (m/s) of each cover by all forces, cover by cover: what is more than damping leaves.

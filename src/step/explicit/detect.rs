@@ -98,7 +98,7 @@ pub(super) fn open_close(
     let Substep { dt, kick, serial, .. } = *step;
     let Model { theta, tolerance, sweeps_max, .. } = *model;
     let options = SolverOptions { dt, kick, theta, tolerance, sweeps_max, serial };
-    let SupportBuffers { rows, bolts } = supports;
+    let SupportBuffers { rows, bolts, .. } = supports;
     let SweepBuffers { open_close, increment, push } = sweep;
     let swept = open_close.run(mass_matrix, &options, approach, contacts, &mut OtherConstraints { rows, bolts });
     open_close.impulses(mass_matrix, increment, push);

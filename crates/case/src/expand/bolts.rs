@@ -33,16 +33,20 @@ pub fn expand(case: &mut Case, told: &mut Expanded) -> Check {
             told.origins.insert(made, key.to_string());
             case.bolts.push(bolt);
         }
-        if let Some(name) = &pattern.name {
-            let names: Vec<String> = case.bolts[first..].iter().filter_map(|bolt| bolt.name.clone()).collect();
-            for stage in &mut case.stages {
-                if let Some(place) = stage.install.iter().position(|installed| installed == name) {
-                    stage.install.splice(place..=place, names.iter().cloned());
-                }
-            }
-        }
+        install_by_name(case, pattern.name.as_deref(), first);
     }
     Ok(())
+}
+
+/// Puts the names of all bolts from `first` on in place of the one name by which stages install them.
+pub(super) fn install_by_name(case: &mut Case, name: Option<&str>, first: usize) {
+    let Some(name) = name else { return };
+    let names: Vec<String> = case.bolts[first..].iter().filter_map(|bolt| bolt.name.clone()).collect();
+    for stage in &mut case.stages {
+        if let Some(place) = stage.install.iter().position(|installed| installed == name) {
+            stage.install.splice(place..=place, names.iter().cloned());
+        }
+    }
 }
 
 fn check(key: &Key, pattern: &BoltPattern) -> Check {
@@ -93,8 +97,12 @@ fn bar(pattern: &BoltPattern) -> Bolt {
         rupture_strain: pattern.rupture_strain,
         pretension: pattern.pretension,
         free_length: pattern.free_length,
+        bond: pattern.bond,
+        bond_stiffness: pattern.bond_stiffness,
+        plate: pattern.plate,
         support: pattern.support,
         active: pattern.active,
+        of_skin: false,
     }
 }
 

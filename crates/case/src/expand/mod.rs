@@ -1,6 +1,6 @@
 //! Expansion of the words of the field in a case into the plain data that the engine builds: dips become angles,
-//! bolt patterns bolts, construction joints joints with a law, K0 a stress, records accelerations of the base and
-//! velocities of waves, and shifted surfaces of water are where they are. This is the only place that does so.
+//! bolt patterns and skins bolts, construction joints joints with a law, K0 a stress, records accelerations of the base
+//! and velocities of waves, and shifted surfaces of water are where they are. This is the only place that does so.
 
 mod bolts;
 mod cells;
@@ -8,7 +8,9 @@ mod cuts;
 mod in_situ;
 mod joint_sets;
 pub mod motions;
+mod skins;
 mod tessellation;
+mod weakness;
 
 pub use cuts::LAW as CUT_LAW;
 
@@ -39,8 +41,10 @@ impl Case {
         joint_sets::expand(self, &mut told)?;
         tessellation::expand(self, &mut told)?;
         cuts::expand(self, &mut told)?;
+        weakness::expand(self)?;
         in_situ::expand(self)?;
         bolts::expand(self, &mut told)?;
+        skins::expand(self, &mut told)?;
         motions::expand(self)?;
         self.shift_water()?;
         Ok(told)
@@ -81,11 +85,13 @@ impl Case {
         let stress = |s: &InSitu| s.k0.is_some() || s.sxx.is_none() || s.syy.is_none() || s.y_reference.is_none();
         let short = [
             ("stage", self.stages.iter().any(|stage| stage.duration_max.is_some())),
+            ("rock", self.rocks.values().any(|rock| rock.plane_of_weakness.as_ref().is_some_and(weakness::is_short))),
             ("joint_set", self.joint_sets.iter().any(unfinished)),
             ("tessellation", !self.tessellations.is_empty()),
             ("cut", !self.cuts.is_empty()),
             ("in_situ", self.in_situ.as_ref().is_some_and(stress)),
             ("bolt_pattern", !self.bolt_patterns.is_empty()),
+            ("skin", !self.skins.is_empty()),
             ("base_motion", self.base_motions.iter().any(motions::is_short_base)),
             ("quiet", self.quiets.iter().any(motions::is_short_wave)),
             ("water", self.water.as_ref().is_some_and(|water| water.shift.is_some())),

@@ -26,6 +26,7 @@ fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
         let message = "a bar held at its ends is free between them; remove it, or set `anchorage = \"grouted\"`";
         return fail(&key.field("free_length"), message);
     }
+    bond(key, bolt)?;
     if let Some(limit) = bolt.yield_force.filter(|&limit| bolt.pretension > limit) {
         let message = format!(
             "is {} N, must be at most {} N, at which the bar yields; lower it or raise `yield_force`",
@@ -51,6 +52,26 @@ fn validate_bolt(key: &Key, bolt: &Bolt) -> Check {
         return fail(&key.field("active"), message);
     }
     Ok(())
+}
+
+/// Checks the bond of a bar with the rock, and what does not go with it.
+fn bond(key: &Key, bolt: &Bolt) -> Check {
+    if bolt.bond.is_none() {
+        let needless = [("bond_stiffness", bolt.bond_stiffness.is_some()), ("plate", bolt.plate)];
+        let message = "belongs to a grouted bar with a `bond`, which is missing; add it, such as `bond = 250e3`, or \
+                       remove this";
+        return needless.iter().find(|(_, given)| *given).map_or(Ok(()), |(name, _)| fail(&key.field(name), message));
+    }
+    if bolt.bond_stiffness.is_none() {
+        return fail(&key.field("bond_stiffness"), "is missing beside `bond`; add it, such as `bond_stiffness = 1e9`");
+    }
+    let message = match (bolt.anchorage, bolt.free_length, bolt.support) {
+        (Anchorage::Ends, ..) => "belongs to a grouted bar; set `anchorage = \"grouted\"`, or remove it",
+        (_, Some(_), _) => "lets the bar slip along its whole length, beside `free_length`; keep one of them",
+        (.., Some(_)) => "lets the rock decide on the force, beside `support`, which gives it; keep one of them",
+        _ => return Ok(()),
+    };
+    fail(&key.field("bond"), message)
 }
 
 /// Checks that every bolt that a stage installs is known and not there yet.

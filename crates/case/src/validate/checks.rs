@@ -188,22 +188,26 @@ impl<'a> Names<'a> {
         Self { what: "fixity", remedy: "add [[fix]] with this `name`", known }
     }
 
-    /// Returns the heads of a case.
-    pub fn of_heads(case: &'a Case) -> Self {
-        let known = case.heads.iter().map(|head| head.name.as_str()).collect();
-        Self { what: "head", remedy: "add [[head]] with this `name`", known }
+    /// Returns the heads, the rain and the drains of a case, in this order.
+    pub fn of_flow(case: &'a Case) -> [Self; 3] {
+        let heads = case.heads.iter().map(|head| head.name.as_str()).collect();
+        let rain = case.rains.iter().map(|rain| rain.name.as_str()).collect();
+        let drains = case.drains.iter().map(|drain| drain.name.as_str()).collect();
+        [
+            Self { what: "head", remedy: "add [[head]] with this `name`", known: heads },
+            Self { what: "rain", remedy: "add [[rain]] with this `name`", known: rain },
+            Self { what: "drain", remedy: "add [[drain]] with this `name`", known: drains },
+        ]
     }
 
-    /// Returns the rain of a case.
-    pub fn of_rain(case: &'a Case) -> Self {
-        let known = case.rains.iter().map(|rain| rain.name.as_str()).collect();
-        Self { what: "rain", remedy: "add [[rain]] with this `name`", known }
+    /// Returns the names.
+    pub fn known(&self) -> &[&'a str] {
+        &self.known
     }
 
-    /// Returns the drains of a case.
-    pub fn of_drains(case: &'a Case) -> Self {
-        let known = case.drains.iter().map(|drain| drain.name.as_str()).collect();
-        Self { what: "drain", remedy: "add [[drain]] with this `name`", known }
+    /// Returns the word for the thing that has such a name.
+    pub fn what(&self) -> &'static str {
+        self.what
     }
 
     /// Returns the dynamic stages of a case.
@@ -211,6 +215,13 @@ impl<'a> Names<'a> {
         let dynamic = case.stages.iter().filter(|stage| stage.kind == StageKind::Dynamic);
         let known = dynamic.map(|stage| stage.name.as_str()).collect();
         Self { what: "dynamic stage", remedy: "add [[stage]] with this `name` and `kind = \"dynamic\"`", known }
+    }
+
+    /// Returns the stages of a case after which another one follows.
+    pub fn of_followed_stages(case: &'a Case) -> Self {
+        let before_last = &case.stages[..case.stages.len().saturating_sub(1)];
+        let known = before_last.iter().map(|stage| stage.name.as_str()).collect();
+        Self { what: "stage that another one follows", remedy: "leave it out to count from the start", known }
     }
 
     /// Returns the named bolts of a case.

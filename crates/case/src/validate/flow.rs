@@ -93,16 +93,14 @@ fn validate_name(key: &Key, name: &str, what: &str) -> Check {
 
 /// Results tell heads, rain and drains apart by name.
 fn validate_names(root: &Key, case: &Case) -> Check {
-    let lists: [(&str, Vec<&str>); 3] = [
-        ("head", case.heads.iter().map(|head| head.name.as_str()).collect()),
-        ("rain", case.rains.iter().map(|rain| rain.name.as_str()).collect()),
-        ("drain", case.drains.iter().map(|drain| drain.name.as_str()).collect()),
-    ];
-    for (k, (what, names)) in lists.iter().enumerate() {
+    let lists = Names::of_flow(case);
+    for (k, list) in lists.iter().enumerate() {
+        let (what, names) = (list.what(), list.known());
         unique(&root.field(what), what, names.iter().copied().map(Some))?;
-        for (other, others) in &lists[..k] {
-            if let Some(at) = names.iter().position(|name| others.contains(name)) {
+        for others in &lists[..k] {
+            if let Some(at) = names.iter().position(|name| others.known().contains(name)) {
                 let key = root.field(what).index(at).field("name");
+                let other = others.what();
                 let message = format!("is {:?}, as a {other} is called, and results need a name for each", names[at]);
                 return fail(&key, format!("{message}; rename one of both"));
             }
@@ -195,11 +193,11 @@ fn refuse_other_blocks(key: &Key, case: &Case) -> Check {
 /// # Errors
 /// The first value that cannot be used.
 pub fn validate_changes(key: &Key, place: usize, stage: &Stage, case: &Case) -> Check {
-    let (heads, rain) = (key.field("heads"), key.field("rain"));
-    let of_heads = stage.heads.keys().map(|name| (&heads, name, Names::of_heads(case)));
-    let of_rain = stage.rain.keys().map(|name| (&rain, name, Names::of_rain(case)));
-    let drain = key.field("drain");
-    let of_drains = stage.drain.iter().map(|name| (&drain, name, Names::of_drains(case)));
+    let [heads, rain, drain] = ["heads", "rain", "drain"].map(|field| key.field(field));
+    let [known_heads, known_rain, known_drains] = Names::of_flow(case);
+    let of_heads = stage.heads.keys().map(|name| (&heads, name, &known_heads));
+    let of_rain = stage.rain.keys().map(|name| (&rain, name, &known_rain));
+    let of_drains = stage.drain.iter().map(|name| (&drain, name, &known_drains));
     for (key, name, names) in of_heads.chain(of_rain).chain(of_drains) {
         names.must_hold(key, name)?;
         let is_drain = std::ptr::eq(key, &raw const drain);

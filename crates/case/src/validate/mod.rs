@@ -10,6 +10,7 @@ pub(crate) mod ground;
 mod joint_sets;
 mod joints;
 mod loads;
+mod monitors;
 mod ports;
 mod random;
 mod rock_strength;
@@ -19,7 +20,7 @@ use crate::key::{Check, Key, fail};
 use crate::keys::{Range, Rule};
 use crate::limits::{NAME_MAX, TITLE_MAX};
 use crate::{Case, Domain, FmuNotes, InSitu, Invalid, JointLaw, Plane, ReportNotes, Rock};
-use checks::{Names, each, harmless, points, polygon, region, unique};
+use checks::{Names, each, harmless, points, polygon, region};
 
 /// Longest line of the cover of a report (bytes).
 const REPORT_NOTE_MAX: usize = 4000;
@@ -74,8 +75,7 @@ impl Case {
         report_notes(&root.field("report"), &self.report)?;
         stages::validate_stages(&root.field("stage"), self)?;
         bolts::validate_installs(&root.field("stage"), self)?;
-        self.validate_monitors(&root.field("monitor"))?;
-        self.output.check(&root.field("output"))?;
+        monitors::validate_monitors(&root, self)?;
         self.solver.check(&root.field("solver"))?;
         random::validate_random(&root, self)?;
         self.validate_drawing_is_used()
@@ -184,11 +184,6 @@ impl Case {
             return fail(&key.field("szz_gradient"), "has no effect without `szz`; add it or remove this");
         }
         Ok(())
-    }
-
-    fn validate_monitors(&self, key: &Key) -> Check {
-        each(key, &self.monitors, |key, monitor| monitor.check(key))?;
-        unique(key, "monitor", self.monitors.iter().map(|monitor| Some(monitor.name.as_str())))
     }
 }
 

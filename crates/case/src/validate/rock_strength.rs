@@ -4,7 +4,7 @@ use crate::key::{Check, Key, fail};
 use crate::keys::Plain;
 use crate::keys::{Range, Rule};
 use crate::rock::FREE;
-use crate::{HoekBrown, Plane, Rock};
+use crate::{HoekBrown, Plane, PlaneOfWeakness, Rock};
 
 const DILATION: Rule = Rock::rule("dilation_deg");
 const TENSION: Rule = Rock::rule("tension");
@@ -20,6 +20,9 @@ pub fn validate_strength(key: &Key, rock: &Rock) -> Check {
                            remove it";
             return fail(&key.field(name), message);
         }
+    }
+    if let Some(plane) = &rock.plane_of_weakness {
+        plane_of_weakness(&key.field("plane_of_weakness"), rock, plane)?;
     }
     match &rock.hoek_brown {
         Some(mass) => hoek_brown(key, rock, mass),
@@ -40,6 +43,28 @@ fn mohr_coulomb(key: &Key, rock: &Rock) -> Check {
     let hint = "the shear planes end at cohesion/tan(friction_deg); leave it out for that";
     let apex = Range::from(0.0).to(cohesion / libm::tan(friction.to_radians()));
     TENSION.in_range(apex).hint(hint).check(key, &rock.tension, None)
+}
+
+fn plane_of_weakness(key: &Key, rock: &Rock, plane: &PlaneOfWeakness) -> Check {
+    if !rock.yields() {
+        let message = "has no effect on rock that never yields; add friction_deg, cohesion or hoek_brown for the rock \
+                       between the planes, or use joints";
+        return fail(key, message);
+    }
+    plane.check(key)?;
+    let (friction, cohesion) = (plane.friction_deg, plane.cohesion);
+    if friction == 0.0 && cohesion == 0.0 {
+        return fail(key, "has friction_deg 0 and cohesion 0, one must be greater than 0; give the planes a strength");
+    }
+    let hint = "more than friction_deg would make energy; leave it out for 0, which is usual";
+    let dilation = PlaneOfWeakness::rule("dilation_deg").in_range(Range::from(0.0).to(friction)).hint(hint);
+    dilation.check(key, &plane.dilation_deg, None)?;
+    if friction == 0.0 {
+        return Ok(());
+    }
+    let hint = "the strength of the planes ends at cohesion/tan(friction_deg); leave it out for that";
+    let apex = Range::from(0.0).to(cohesion / libm::tan(friction.to_radians()));
+    PlaneOfWeakness::rule("tension").in_range(apex).hint(hint).check(key, &plane.tension, None)
 }
 
 fn hoek_brown(key: &Key, rock: &Rock, mass: &HoekBrown) -> Check {

@@ -1,5 +1,6 @@
 //! Blocks and frames of a model for the film of the page `report.html`.
 
+mod elements;
 mod structures;
 mod water;
 
@@ -8,11 +9,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use enmm_report::{
-    Axis, BlockFrame, BlockNumber, Column, EdgeState, FilmError, FilmWriter, Frame, Head, MonitorFrame, MonitorPlace,
-    Note, Outline, PAGE, Structures, write_page,
+    Axis, BlockFrame, BlockNumber, Column, EdgeState, FilmError, FilmWriter, Frame, Head, Mesh, MonitorFrame,
+    MonitorPlace, Note, Outline, PAGE, Structures, write_page,
 };
 
 use crate::breaks::BreakRecord;
+use elements::Meshes;
 use enmm::geometry::{Point, Vector, polygon};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, EdgeId};
@@ -25,6 +27,9 @@ use structures::{Beside, bolt_places};
 /// Numbers of blocks that the film of a model that moves leaves out: they never change, or follow from others of it.
 const LEFT_OUT: [&str; 8] =
     ["centroid_x", "centroid_y", "area", "mass", "kinetic_energy", "strain_energy", "contacts", "speed"];
+
+/// Frames of the film from one with the numbers of elements to the next.
+const ELEMENTS_EVERY: u32 = 3;
 
 /// Ranges of the colours of numbers: a share of strength of 1 breaks.
 const RANGES: [(&str, [u32; 2]); 1] = [("strength_share", [0, 1])];
@@ -54,6 +59,10 @@ pub struct Film {
     noted: usize,
     /// Unknowns of the flow in joints that was noted last.
     flow: Vec<f64>,
+    /// Elements, in a film that shows them.
+    meshes: Option<Meshes>,
+    /// Frames since the last one with the numbers of elements, and its stage.
+    since: Option<(u32, u32)>,
 }
 
 /// Opening of a film beside the case and its model.
@@ -67,6 +76,8 @@ pub struct Opening<'a> {
     pub axis: Axis,
     /// Numbers of blocks in frames, by name.
     pub numbers: Vec<&'static str>,
+    /// Whether it shows elements; velocity, spin and mean stress are among the numbers of blocks then.
+    pub elements: bool,
     /// Names and units of the columns of the histories, the time first.
     pub columns: &'a [(String, &'static str)],
 }
@@ -84,7 +95,8 @@ impl Film {
         until: Option<f64>,
     ) -> io::Result<Self> {
         let simulation = &*simulation.cut_ahead();
-        let (outlines, corners) = outlines(simulation);
+        let (mut outlines, corners) = outlines(simulation);
+        let meshes = opening.elements.then(|| Meshes::of(simulation, &mut outlines, &corners));
         let path = opening.film.clone();
         let shown: Vec<&Quantity<BlockState>> = opening.numbers.iter().filter_map(|name| number(name)).collect();
         let numbers = shown.iter().map(|quantity| quantity.get).collect();
@@ -97,7 +109,8 @@ impl Film {
         let can_have_older = until.is_some() && simulation.model().breaking.is_some();
         let breaks = (!can_have_older).then(|| simulation.cuts().len());
         let (writer, page) = (writer.map_err(refused)?, directory.join(PAGE));
-        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0, flow: Vec::new() })
+        let (flow, since) = (Vec::new(), None);
+        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0, flow, meshes, since })
     }
 
     /// Appends the model as it is now.
@@ -105,15 +118,34 @@ impl Film {
     /// # Errors
     /// As [`Film::open`].
     pub fn frame(&mut self, simulation: &Simulation) -> io::Result<()> {
-        self.frame_at(simulation, simulation.time())
+        let (simulation, time) = (&*simulation.cut_ahead(), simulation.time());
+        let stage = simulation.state().stage;
+        self.since = self.since.filter(|&(since, before)| since < ELEMENTS_EVERY && before == stage);
+        self.since = self.since.map(|(since, stage)| (since + 1, stage));
+        self.blocks_at(simulation, time)?;
+        // Also where blocks have broken since the last frame.
+        if self.since.is_none() { self.elements_at(simulation, time) } else { Ok(()) }
     }
 
-    /// Appends the model as it is now at another place of the slider.
+    /// Appends the model as it is now, with its elements, at a place of the slider.
     ///
     /// # Errors
     /// As [`Film::open`].
     pub fn frame_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         let simulation = &*simulation.cut_ahead();
+        self.blocks_at(simulation, time)?;
+        self.elements_at(simulation, time)
+    }
+
+    /// Appends the elements of a model whose blocks the last frame has.
+    fn elements_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
+        self.since = Some((1, simulation.state().stage));
+        let Some(meshes) = &self.meshes else { return Ok(()) };
+        meshes.write(simulation, time, &mut self.writer).map_err(refused)
+    }
+
+    /// Appends the blocks of a model.
+    fn blocks_at(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         self.follow_breaks(simulation, time)?;
         self.note_flow(simulation, time)?;
         let displacement = |&point: &EdgeId| {
@@ -121,7 +153,9 @@ impl Film {
             [sample.x, sample.y]
         };
         let monitor = |k| {
-            let (u, v) = simulation.monitor(k);
+            // Where it is, from the start on.
+            let ((element, point), v) = (simulation.built().monitors.points[k], simulation.monitor(k).1);
+            let u = simulation.model().sample(element, point, &simulation.state().displacement);
             MonitorFrame { displacement: [u.x, u.y], velocity: [v.x, v.y] }
         };
         let states = edge_states(simulation);
@@ -144,7 +178,9 @@ impl Film {
     fn follow_breaks(&mut self, simulation: &Simulation, time: f64) -> io::Result<()> {
         let breaks = Some(simulation.cuts().len());
         if self.breaks != breaks {
-            let (outlines, corners) = outlines(simulation);
+            let (mut outlines, corners) = outlines(simulation);
+            self.meshes = self.meshes.take().map(|_| Meshes::of(simulation, &mut outlines, &corners));
+            self.since = None;
             self.writer.outlines(time, &outlines).map_err(refused)?;
             (self.corners, self.breaks) = (corners, breaks);
         }
@@ -270,6 +306,7 @@ impl Film {
     pub fn discard(&mut self) {
         self.forget_breaks();
         self.flow.clear();
+        self.since = None;
         self.writer.discard();
     }
 
@@ -280,6 +317,7 @@ impl Film {
     pub fn cut(&mut self, until: f64) -> io::Result<()> {
         self.forget_breaks();
         self.flow.clear();
+        self.since = None;
         self.writer.cut(until).map_err(refused)
     }
 
@@ -318,6 +356,7 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &
         name: name.clone(),
         quantity: quantity(name, unit).to_owned(),
         unit: (*unit).to_owned(),
+        gaps: has_gaps(name),
     };
     let number = |quantity: &&Quantity<BlockState>| BlockNumber {
         name: quantity.name.to_owned(),
@@ -340,8 +379,31 @@ fn head(loaded: &LoadedCase, simulation: &Simulation, opening: Opening, shown: &
     }
 }
 
+/// Ends of the names of columns of stress and joints, which have no value where rock has been excavated, and the
+/// quantities by which they are charted.
+const READINGS: [(&str, &str); 10] = [
+    ("_opening", "Opening of joints"),
+    ("_slip", "Slip of joints"),
+    ("_normal_stress", "Normal stress on joints"),
+    ("_shear_stress", "Shear stress on joints"),
+    ("_stress_xx", "Stress"),
+    ("_stress_yy", "Stress"),
+    ("_stress_xy", "Stress"),
+    ("_principal_max", "Principal stress"),
+    ("_principal_min", "Principal stress"),
+    ("_principal_angle", "Direction of the greatest compression"),
+];
+
+/// Whether a column may be without values.
+fn has_gaps(name: &str) -> bool {
+    READINGS.iter().any(|(end, _)| name.ends_with(end))
+}
+
 /// The quantity by which a column of the histories is charted.
 fn quantity<'a>(name: &'a str, unit: &str) -> &'a str {
+    if let Some((_, quantity)) = READINGS.iter().find(|(end, _)| name.ends_with(end)) {
+        return quantity;
+    }
     match (name, unit) {
         (_, "m/s") => "Velocity",
         (_, "J/m") => "Energy",
@@ -377,6 +439,7 @@ fn outlines(simulation: &Simulation) -> (Vec<Outline>, Vec<EdgeId>) {
             mass: state.mass,
             centroid: [centroid.x, centroid.y],
             loops: loops.iter().map(corners).collect(),
+            mesh: Mesh::default(),
         }
     };
     let outlines = model.covers.blocks().zip(loops.iter_mut().zip(&states)).map(outline).collect();

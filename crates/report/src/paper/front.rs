@@ -6,6 +6,7 @@ use super::number::{Digits, mass, percent, plain};
 use super::parts::{chapter, entries, part, text, texts};
 use super::records::{Record, Records};
 use super::results::{factor_cell, limit_factor, permanent_motions, stage_of_factor};
+use super::sweep::first_crossing;
 use super::table::{Cell, facts, list, paragraph, text_html};
 
 /// Project, author, date, version and the main results.
@@ -70,6 +71,9 @@ fn main_results(records: &Records) -> String {
     }
     if let Some(ensemble) = &records.ensemble {
         rows.push(("Probability of failure", percent(&ensemble.json["probability_of_failure"]).into()));
+    }
+    if let Some(sweep) = &records.sweep {
+        rows.push(("F passes the limit at", first_crossing(&sweep.json)));
     }
     let motions = records.run.as_ref().map_or(String::new(), |run| permanent_motions(&run.json));
     format!("<div class=\"result\">\n{}{motions}</div>\n", facts(&rows))
@@ -151,6 +155,7 @@ pub fn missing(records: &Records) -> String {
         (&records.run, "Stages, displacements, stresses and histories", "enmm run"),
         (&records.fos, "Factor of safety by strength reduction", "enmm fos"),
         (&records.ensemble, "Probability of failure", "enmm sample"),
+        (&records.sweep, "Factor over values of keys", "enmm sweep"),
     ];
     for (record, what, command) in commands {
         if record.is_none() {
@@ -174,7 +179,12 @@ pub fn missing(records: &Records) -> String {
             }
         }
     }
-    let pictures = [(&records.run, "model"), (&records.fos, "failure"), (&records.ensemble, "ensemble")];
+    let pictures = [
+        (&records.run, "model"),
+        (&records.fos, "failure"),
+        (&records.ensemble, "ensemble"),
+        (&records.sweep, "sweep"),
+    ];
     for (record, name) in pictures {
         if record.as_ref().is_some_and(|record| matches!(record.picture(name), Ok(None))) {
             lines.push(format!("Picture {name}.svg: it was not drawn."));

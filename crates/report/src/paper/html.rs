@@ -1,10 +1,12 @@
 //! The whole report.
 
+use super::earthquake::earthquake_chapter;
 use super::front::{missing, title_page, warnings};
 use super::input::input_chapter;
 use super::parts::{chapter, text};
 use super::records::Records;
 use super::results::{bound_chapter, factor_chapter, probability_chapter, run_chapter};
+use super::sweep::sweep_chapter;
 use super::table::text_html;
 
 const STYLE: &str = include_str!("style.css");
@@ -15,9 +17,11 @@ pub fn report_html(records: &Records) -> String {
         title_page(records),
         input_chapter(records),
         run_chapter(records),
+        earthquake_chapter(records),
         factor_chapter(records),
         bound_chapter(records),
         probability_chapter(records),
+        sweep_chapter(records),
         warnings(records),
         missing(records),
         case_file(records),
@@ -41,5 +45,5 @@ fn case_file(records: &Records) -> String {
     }
     let name = text(&record.json["case_file"]);
     let content = format!("<p>{}</p>\n<pre>{}</pre>\n", text_html(name), text_html(written));
-    chapter("Case file", &content).replacen("<section>", "<section class=\"page\">", 1)
+    chapter("Case file", &content)
 }

@@ -1,7 +1,10 @@
 //! Input: section, rock, joints, water, loads, bolts, stages.
 
 use enmm_case::keys::Rule;
-use enmm_case::{Bolt, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, Rock, RockFracture, Section, Water};
+use enmm_case::{
+    Bolt, Flow, Gravity, HoekBrown, InSitu, JointLaw, JointSet, Load, PlaneOfWeakness, Rock, RockFracture, Section,
+    Water,
+};
 use serde_json::Value;
 
 use super::number::{Digits, Number, length, plain, prefixed, steel_area};
@@ -87,6 +90,7 @@ fn rocks(input: &Value) -> String {
             name,
             keys(Rock::KEYS, rock),
             keys(HoekBrown::KEYS, &rock["hoek_brown"]),
+            keys(PlaneOfWeakness::KEYS, &rock["plane_of_weakness"]),
             keys(RockFracture::KEYS, &rock["fracture"]),
         ]
         .concat()

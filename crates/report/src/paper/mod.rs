@@ -1,8 +1,9 @@
 //! The report of results on paper: one HTML file that prints on A4 from any browser, and a PDF by a browser.
 //!
-//! A report is made from what commands left in a folder (`summary.json`, `fos.json`, `bound.json`, `ensemble.json` and
-//! pictures) and computes nothing: every number of its tables stands in one of these records.
+//! A report is made from what commands left in a folder (`summary.json`, `fos.json`, `bound.json`, `ensemble.json`,
+//! `sweep.json` and pictures) and computes nothing: every number of its tables stands in one of these records.
 
+mod earthquake;
 mod front;
 mod html;
 mod input;
@@ -11,6 +12,7 @@ mod parts;
 mod pdf;
 mod records;
 mod results;
+mod sweep;
 mod table;
 
 use std::io;

@@ -15,8 +15,10 @@ pub fn figure(record: &Record, name: &str, caption: &str) -> String {
         Err(error) => return format!("<p>{}</p>\n", text_html(&format!("Picture {name}.svg is left out: {error}."))),
     };
     let caption = text_html(caption);
+    // The section needs a page for its legend; others go two to a page.
+    let class = if name == "model" { " class=\"whole\"" } else { "" };
     format!(
-        "<figure>\n<img alt=\"{caption}\" src=\"data:image/svg+xml;base64,{}\">\n<figcaption>{caption}</figcaption>\n\
+        "<figure{class}>\n<img alt=\"{caption}\" src=\"data:image/svg+xml;base64,{}\">\n<figcaption>{caption}</figcaption>\n\
          </figure>\n",
         STANDARD.encode(svg)
     )

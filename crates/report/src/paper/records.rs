@@ -33,6 +33,8 @@ pub struct Records {
     pub bound: Option<Record>,
     /// Of `enmm sample`.
     pub ensemble: Option<Record>,
+    /// Of `enmm sweep`.
+    pub sweep: Option<Record>,
 }
 
 /// Why there is no report.
@@ -43,8 +45,9 @@ pub enum RecordsError {
     NoFolder(PathBuf),
     /// No command has left a record.
     #[error(
-        "{} holds no results: neither summary.json (enmm run), fos.json (enmm fos), bound.json (enmm bound) nor \
-         ensemble.json (enmm sample) is there or in its folders fos, bound, sample; run one of them with -o {}",
+        "{} holds no results: neither summary.json (enmm run), fos.json (enmm fos), bound.json (enmm bound), \
+         ensemble.json (enmm sample) nor sweep.json (enmm sweep) is there or in its folders fos, bound, sample, sweep; \
+         run one of them with -o {}",
         .0.display(), .0.display()
     )]
     Nothing(PathBuf),
@@ -62,7 +65,7 @@ pub enum RecordsError {
 }
 
 impl Records {
-    /// Reads the records in a folder, and in its folders `fos`, `bound` and `sample` what is not in itself.
+    /// Reads the records in a folder, and in its folders `fos`, `bound`, `sample` and `sweep` what is not in itself.
     ///
     /// # Errors
     /// See [`RecordsError`].
@@ -80,13 +83,14 @@ impl Records {
             fos: find("fos.json", "fos")?,
             bound: find("bound.json", "bound")?,
             ensemble: find("ensemble.json", "sample")?,
+            sweep: find("sweep.json", "sweep")?,
         };
         if records.all().next().is_none() { Err(RecordsError::Nothing(directory.to_owned())) } else { Ok(records) }
     }
 
-    /// The records that are there: run, factor of safety, limit analysis, ensemble.
+    /// The records that are there: run, factor of safety, limit analysis, ensemble, sweep.
     pub fn all(&self) -> impl Iterator<Item = &Record> {
-        [&self.run, &self.fos, &self.bound, &self.ensemble].into_iter().flatten()
+        [&self.run, &self.fos, &self.bound, &self.ensemble, &self.sweep].into_iter().flatten()
     }
 
     /// The first record with the input of its case.

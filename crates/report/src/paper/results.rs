@@ -48,12 +48,38 @@ pub fn run_chapter(records: &Records) -> String {
         part("Stages as they went", &stages),
         size,
         part("Bolts at the end of the run", &bolts),
+        part("Monitors at the end of the run", &monitors(&run.json)),
         part("Blocks that broke", &breaks(&run.json["breaks"])),
         part("Blocks nearest to breaking at the end of the run", &worst_sections(&run.json["worst_sections"])),
         part("Histories", &histories),
         part("Ends of the stages", &stage_figures(run)),
     ];
     chapter("Run of the stages", &content.concat())
+}
+
+/// Monitors of points and of joints.
+fn monitors(run: &Value) -> String {
+    let pascal = |value: &Value| -> Cell { prefixed(value, "Pa", Three).into() };
+    let point = |monitor: &Value| {
+        let moved = [0, 1].map(|k| length(&monitor["displacement"][k], Three).into());
+        let stress = [0, 1, 2].map(|k| pascal(&monitor["stress"][k]));
+        [vec![text(&monitor["name"]).into()], moved.into(), stress.into()].concat()
+    };
+    let joint = |monitor: &Value| {
+        let apart = ["opening", "slip"].map(|key| length(&monitor[key], Three).into());
+        let stress = ["normal_stress", "shear_stress"].map(|key| pascal(&monitor[key]));
+        [vec![text(&monitor["name"]).into()], apart.into(), stress.into()].concat()
+    };
+    let points: Vec<Vec<Cell>> = entries(&run["monitors"]).iter().map(point).collect();
+    let joints: Vec<Vec<Cell>> = entries(&run["joint_monitors"]).iter().map(joint).collect();
+    let since = match text(&run["since"]) {
+        "" => String::new(),
+        since => paragraph(&format!("Displacements, openings and slips count from the end of the stage {since}.")),
+    };
+    let moved = ["Monitor", "Displacement x", "y", "Stress xx", "yy", "xy"];
+    let apart = ["Monitor of a joint", "Opening", "Slip", "Normal stress", "Shear stress"];
+    let tables = table(&moved, &points) + &table(&apart, &joints);
+    if tables.is_empty() { tables } else { since + &tables }
 }
 
 /// Blocks that broke, in the order of time.
@@ -149,6 +175,7 @@ fn stage_figures(run: &Record) -> String {
         ("mean_stress_contours", "mean stress"),
         ("strength", "share of strength of the worst section of each block"),
         ("flow", "pressure head of the water in joints, and its flow"),
+        ("lines", "displacement across and along lines at the ends of the stages so far"),
     ];
     let of_stage = |(k, stage): (usize, &Value)| {
         let name = text(&stage["name"]);

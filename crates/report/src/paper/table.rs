@@ -119,7 +119,8 @@ fn turned(head: &[&str], rows: &[Vec<Cell>], columns: &[usize]) -> String {
         format!("<tr><th scope=\"row\">{}</th>{cells}</tr>\n", text_html(head[k]))
     };
     let body: String = columns.iter().map(line).collect();
-    format!("<table class=\"turned\">\n<tbody>\n{body}</tbody>\n</table>\n")
+    let class = if columns.len() <= SHORT { "turned short" } else { "turned" };
+    format!("<table class=\"{class}\">\n<tbody>\n{body}</tbody>\n</table>\n")
 }
 
 /// Names with their values, one below the other; those without a value are left out.
@@ -128,8 +129,9 @@ pub fn facts(rows: &[(&str, Cell)]) -> String {
     let line = |(name, cell): &(&str, Cell)| {
         format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", text_html(name), cell.html())
     };
-    let body: String = there.map(line).collect();
-    if body.is_empty() { body } else { format!("<table class=\"facts\">\n<tbody>\n{body}</tbody>\n</table>\n") }
+    let body: String = there.clone().map(line).collect();
+    let class = if there.count() <= SHORT { "facts short" } else { "facts" };
+    if body.is_empty() { body } else { format!("<table class=\"{class}\">\n<tbody>\n{body}</tbody>\n</table>\n") }
 }
 
 /// A paragraph.

@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use enmm_report::{
-    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, FilmWriter, Frame, Head, MonitorFrame,
-    MonitorPlace, Outline, Structures, SupportFrame,
+    Axis, BlockFrame, BlockNumber, BoltFrame, BoltPlace, Column, EdgeState, FilmWriter, Frame, Head, Mesh,
+    MonitorFrame, MonitorPlace, Outline, Structures, SupportFrame,
 };
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 
@@ -150,7 +150,16 @@ fn quadrilateral(id: u32, corners: [[f64; 2]; 4]) -> Outline {
     let [a, b, c, d] = corners;
     let area = 0.5 * ((c[0] - a[0]) * (d[1] - b[1]) - (c[1] - a[1]) * (d[0] - b[0]));
     let centroid = [0.25 * sum(0), 0.25 * sum(1)];
-    Outline { id, fixed: false, rock: 0, area, mass: 2650.0 * area, centroid, loops: vec![points] }
+    Outline {
+        id,
+        fixed: false,
+        rock: 0,
+        area,
+        mass: 2650.0 * area,
+        centroid,
+        loops: vec![points],
+        mesh: Mesh::default(),
+    }
 }
 
 /// One instant of a slope, owned.
@@ -165,7 +174,17 @@ pub struct Moment {
 }
 
 /// Numbers of a block.
-const NUMBERS: [&str; 9] = ["displacement_x", "displacement_y", "rotation", "vx", "vy", "spin", "xx", "yy", "xy"];
+const NUMBERS: [&str; 9] = [
+    "displacement_x",
+    "displacement_y",
+    "rotation",
+    "velocity_x",
+    "velocity_y",
+    "angular_velocity",
+    "mean_stress_xx",
+    "mean_stress_yy",
+    "mean_stress_xy",
+];
 
 /// Surface of the water (m).
 pub const SURFACE: [[f64; 2]; 2] = [[0.0, 4.0], [20.0, 9.0]];
@@ -200,6 +219,7 @@ pub fn head() -> Head {
         name: name.to_owned(),
         quantity: quantity.to_owned(),
         unit: unit.to_owned(),
+        gaps: false,
     };
     Head {
         title: "Synthetic".to_owned(),
@@ -221,7 +241,7 @@ pub type Chunk = (String, f64, Vec<u8>);
 
 /// All chunks, read by what `format.md` says alone.
 pub fn chunks(film: &[u8]) -> Vec<Chunk> {
-    assert_eq!(&film[..8], b"enmmfil5");
+    assert_eq!(&film[..8], b"enmmfil6");
     let (mut rest, mut chunks) = (&film[8..], Vec::new());
     while !rest.is_empty() {
         let kind = String::from_utf8(rest[..4].to_vec()).unwrap();

@@ -9,7 +9,7 @@ use enmm_stability::strength_reduction::{End, Progress, Trial};
 use serde_json::{Value, json};
 
 use super::SearchOptions;
-use crate::fos::{FosError, Found, end_name, remedy, search};
+use crate::fos::{FosError, Found, remedy, search};
 use crate::run::{RunOptions, run};
 use enmm_record::RunStatus;
 
@@ -145,7 +145,7 @@ fn factor(
 /// bound is that bound.
 fn values(found: &Found) -> Values {
     let main = found.main();
-    let status = end_name(&main.end);
+    let status = main.end.name();
     let factor = main.at_most().or(main.factor()).or(main.at_least()).or(main.high);
     let Some(factor) = factor.filter(|_| !matches!(main.end, End::Failed(_) | End::Interrupted)) else {
         let remedy = remedy(main).unwrap_or_default();

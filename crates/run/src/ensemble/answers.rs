@@ -9,6 +9,9 @@ use enmm_io::LoadedCase;
 
 use super::{Answer, EnsembleError, EnsembleOptions, SampleOutput, SearchOptions, columns};
 
+/// How a search ends whose slope stands at no factor that was tried.
+const NEVER_STABLE: &str = "unstable_throughout";
+
 /// Order to a worker.
 #[derive(Debug)]
 pub struct Ask {
@@ -35,7 +38,8 @@ pub struct EnsembleProgress {
     pub done: usize,
     /// Samples of which it is wanted.
     pub wanted: usize,
-    /// Of those that are done: how many have a factor, and how many of them are below the limit.
+    /// Of all samples of the ensemble that are decided: how many have a factor, and how many of them are below the
+    /// limit.
     pub answered: usize,
     /// See `answered`.
     pub below: usize,
@@ -56,6 +60,25 @@ pub struct Answers<'a> {
     store: Store,
     ask: Worker<'a>,
     hear: &'a mut dyn FnMut(&EnsembleProgress),
+    /// Samples that are decided so far, over all calls.
+    tally: Tally,
+    /// Number of samples of earlier calls, where each call works out a batch of one output; none where a call is a part
+    /// of the work by itself.
+    pub earlier: Option<usize>,
+}
+
+/// Samples that are decided: how many have a factor, and how many of them are below the limit.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Tally {
+    answered: usize,
+    below: usize,
+}
+
+impl Tally {
+    fn count(&mut self, fails: Option<bool>) {
+        self.answered += usize::from(fails.is_some());
+        self.below += usize::from(fails == Some(true));
+    }
 }
 
 impl<'a> Answers<'a> {
@@ -74,7 +97,7 @@ impl<'a> Answers<'a> {
             std::fs::create_dir_all(parent).map_err(EnsembleError::Output)?;
         }
         let store = Store::open(&options.store)?;
-        Ok(Self { loaded, options, values, store, ask, hear })
+        Ok(Self { loaded, options, values, store, ask, hear, tally: Tally::default(), earlier: None })
     }
 
     /// Number of samples.
@@ -82,7 +105,7 @@ impl<'a> Answers<'a> {
         self.values.len()
     }
 
-    /// One output of some samples, in their order.
+    /// One output of some samples, in their order, which decides whether they fail.
     ///
     /// # Errors
     /// See [`EnsembleError`]; what is done stays in the store.
@@ -92,13 +115,41 @@ impl<'a> Answers<'a> {
         output: impl Into<SampleOutput>,
         search: &SearchOptions,
     ) -> Result<Vec<Row>, EnsembleError> {
-        let output = output.into();
+        self.work_out(samples, output.into(), search, true)
+    }
+
+    /// One output of some samples, in their order, which leaves open whether they fail.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn look(
+        &mut self,
+        samples: &[usize],
+        output: impl Into<SampleOutput>,
+        search: &SearchOptions,
+    ) -> Result<Vec<Row>, EnsembleError> {
+        self.work_out(samples, output.into(), search, false)
+    }
+
+    /// Counts a sample that has been decided without work on it.
+    pub fn decided(&mut self, fails: bool) {
+        self.tally.count(Some(fails));
+    }
+
+    fn work_out(
+        &mut self,
+        samples: &[usize],
+        output: SampleOutput,
+        search: &SearchOptions,
+        decides: bool,
+    ) -> Result<Vec<Row>, EnsembleError> {
         let keys = self.sample_keys(samples, output, search);
         let names = columns(output);
         let mut found = keys.iter().map(|key| self.store.find(key, names)).collect::<Result<Vec<_>, _>>()?;
         let again = |row: &Row| self.options.retry_failed && !row.is_done();
         let wanted: Vec<usize> = (0..samples.len()).filter(|&i| found[i].as_ref().is_none_or(again)).collect();
-        let mut progress = self.begin(output, &found);
+        let mut tally = self.tally;
+        let mut progress = self.begin(output, &found, decides.then_some(&mut tally));
         (self.hear)(&progress);
         let timed = |i: usize| {
             let clock = Instant::now();
@@ -112,11 +163,12 @@ impl<'a> Answers<'a> {
             let Answer::Done(row) = answer else { return Err(EnsembleError::Changed) };
             let k = samples[i];
             store.add(&keys[i], k, &self.values[k], &row, (seconds, engine_version()))?;
-            progress.note(&row, limit, Some((k, seconds)));
+            progress.note(&row, decides.then_some((&mut tally, limit)), Some((k, seconds)));
             found[i] = Some(row);
             hear(&progress);
             Ok(())
         })?;
+        self.tally = tally;
         let EnsembleProgress { done, wanted: n, .. } = progress;
         if self.options.interrupt.load(Ordering::Relaxed) && done < n {
             return Err(EnsembleError::Interrupted { done, n });
@@ -139,24 +191,30 @@ impl<'a> Answers<'a> {
     }
 
     /// Counts what the store has; rows that are to be worked out again do not count.
-    fn begin(&self, output: SampleOutput, found: &[Option<Row>]) -> EnsembleProgress {
-        let (wanted, limit) = (found.len(), self.loaded.case.ensemble.limit);
+    fn begin(&self, output: SampleOutput, found: &[Option<Row>], mut decides: Option<&mut Tally>) -> EnsembleProgress {
+        let limit = self.loaded.case.ensemble.limit;
+        let Tally { answered, below } = self.tally;
+        let (done, wanted) = self.earlier.map_or((0, found.len()), |earlier| (earlier, self.values.len()));
         let begun = Instant::now();
-        let mut progress =
-            EnsembleProgress { output, begun, stored: 0, done: 0, wanted, answered: 0, below: 0, slowest: None };
+        let mut progress = EnsembleProgress { output, begun, stored: 0, done, wanted, answered, below, slowest: None };
         let kept = found.iter().flatten().filter(|row| row.is_done() || !self.options.retry_failed);
-        kept.for_each(|row| progress.note(row, limit, None));
+        for row in kept {
+            progress.note(row, decides.as_deref_mut().map(|tally| (tally, limit)), None);
+        }
         EnsembleProgress { stored: progress.done, ..progress }
     }
 }
 
 impl EnsembleProgress {
-    fn note(&mut self, row: &Row, limit: f64, took: Option<(usize, f64)>) {
+    /// A sample is done, and counts in a tally where it is decided.
+    fn note(&mut self, row: &Row, decides: Option<(&mut Tally, f64)>, took: Option<(usize, f64)>) {
         self.done += 1;
-        let factor = row.number(columns(self.output)[0]).filter(|_| self.output != SampleOutput::Displacement);
-        if let Some(output) = factor {
-            self.answered += 1;
-            self.below += usize::from(output < limit);
+        if let Some((tally, limit)) = decides.filter(|_| self.output != SampleOutput::Displacement) {
+            // A search that found no factor at which the slope stands has the least that it tried, which may be the
+            // limit itself.
+            let fails = |factor: f64| factor < limit || factor <= limit && row.text("status") == NEVER_STABLE;
+            tally.count(row.number(columns(self.output)[0]).map(fails));
+            (self.answered, self.below) = (tally.answered, tally.below);
         }
         let slower =
             |(k, seconds): (usize, f64)| self.slowest.is_none_or(|(_, most)| seconds > most).then_some((k, seconds));

@@ -27,7 +27,7 @@ pub(crate) use answer::{FAILS, NO_VERDICT};
 pub use answer::{SampleOutput, answer, columns};
 pub use answers::{Ask, EnsembleProgress};
 pub use record::EnsembleResult;
-pub(crate) use record::{Answered, messages, output_name, write_table};
+pub(crate) use record::{Answered, head, output_name, write_record, write_table};
 
 /// Samples after each of which the width of the interval is looked at.
 const BATCH: usize = 50;
@@ -186,6 +186,7 @@ fn rows(of: &Ensemble, options: &EnsembleOptions, answers: &mut Answers) -> Resu
     let mut margin = None;
     while rows.len() < n {
         let next = rows.len()..n.min(rows.len() + batch);
+        answers.earlier = (of.output != EnsembleOutput::Failure).then_some(rows.len());
         rows.extend(match of.output {
             EnsembleOutput::Failure => screen::rows(next, of.limit, &options.search, answers, &mut margin)?,
             output => answers.find(&next.collect::<Vec<_>>(), output, &options.search)?,

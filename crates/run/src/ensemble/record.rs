@@ -10,7 +10,7 @@ use enmm_ensemble::{Interval, Row, Samples, beta, mean, quantile, spearman, stan
 use enmm_io::LoadedCase;
 use enmm_io::files::{at_path, write_atomic};
 use enmm_picture::{Fit, histogram_picture, three_digits};
-use serde_json::{Value as Json, json};
+use serde_json::{Map, Value as Json, json};
 
 use super::{CONFIDENCE, EnsembleError, EnsembleOptions, SampleOutput, columns};
 use enmm_record::input_record;
@@ -94,8 +94,37 @@ pub(crate) fn write_table<'a>(
     write_atomic(path, &bytes)
 }
 
+/// The head of a record of samples: case, store, options, samples without an answer and doubtful ones.
+pub(crate) fn head(
+    loaded: &LoadedCase,
+    options: &EnsembleOptions,
+    [failed, doubtful]: [&[(usize, String)]; 2],
+    wall: f64,
+) -> Map<String, Json> {
+    let pairs = [
+        ("title", json!(loaded.case.title)),
+        ("version", json!(engine_version())),
+        ("case_file", json!(loaded.source.file())),
+        ("case_hash", json!(loaded.hash)),
+        ("settings", json!(loaded.settings)),
+        ("store", json!(options.store)),
+        ("options", json!(options.search.given())),
+        ("without_answer", json!(messages(failed))),
+        ("doubtful", json!(messages(doubtful))),
+        ("input", input_record(loaded)),
+        ("wall_seconds", json!(wall)),
+    ];
+    pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Writes a record whole or not at all.
+pub(crate) fn write_record(path: &Path, record: &Map<String, Json>) -> io::Result<()> {
+    let text = serde_json::to_vec_pretty(record).map_err(io::Error::from).map_err(at_path(path))?;
+    write_atomic(path, &text)
+}
+
 /// A list of samples with a message each, for records.
-pub(crate) fn messages(list: &[(usize, String)]) -> Vec<Json> {
+fn messages(list: &[(usize, String)]) -> Vec<Json> {
     list.iter().map(|(k, message)| json!({ "sample": k, "message": message })).collect()
 }
 
@@ -203,29 +232,18 @@ impl EnsembleResult {
         let (outputs, limit) = (&self.outputs, self.ensemble.limit);
         let picture = histogram_picture(&loaded.case.title, &caption, name, outputs, limit, self.fit());
         picture.write(directory, "ensemble")?;
-        let path = directory.join("ensemble.json");
-        let record = self.record(loaded, options, wall);
-        let text = serde_json::to_vec_pretty(&record).map_err(io::Error::from).map_err(at_path(&path))?;
-        write_atomic(&path, &text)
+        write_record(&directory.join("ensemble.json"), &self.record(loaded, options, wall))
     }
 
-    fn record(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> Json {
+    fn record(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> Map<String, Json> {
         let Interval { low, high } = self.interval();
         let given: Vec<Json> = loaded.case.random.iter().map(|row| json!(row)).collect();
-        json!({
-            "title": loaded.case.title,
-            "version": engine_version(),
-            "case_file": loaded.source.file(),
-            "case_hash": loaded.hash,
-            "settings": loaded.settings,
-            "store": options.store,
-            "options": options.search.given(),
+        let mut record = head(loaded, options, [&self.failed, &self.doubtful], wall);
+        let Json::Object(own) = json!({
             "ensemble": self.ensemble,
             "random": given,
             "random_correlation": loaded.case.random_correlations,
             "samples": self.rows.len(),
-            "without_answer": messages(&self.failed),
-            "doubtful": messages(&self.doubtful),
             "failures": self.failures(),
             "probability_of_failure": self.probability_of_failure(),
             "interval": [low, high],
@@ -237,8 +255,10 @@ impl EnsembleResult {
             "fit": self.fit().map(|fit| if fit.is_lognormal { "lognormal" } else { "normal" }),
             "quantiles": self.quantiles().map(|(share, output)| [share, output]),
             "rank_correlation": self.sensitivity().into_iter().collect::<BTreeMap<_, _>>(),
-            "input": input_record(loaded),
-            "wall_seconds": wall,
-        })
+        }) else {
+            return record;
+        };
+        record.extend(own);
+        record
     }
 }

@@ -65,7 +65,7 @@ pub fn rows(
 ) -> Result<Vec<Row>, EnsembleError> {
     let is_first = samples.start == 0;
     let samples: Vec<usize> = samples.collect();
-    let bounds = answers.find(&samples, LevelTops, &SearchOptions::default())?;
+    let bounds = answers.look(&samples, LevelTops, &SearchOptions::default())?;
     let bound = |i: usize| bounds[i].number("level_tops");
     let mut rows: Vec<Option<Row>> = vec![None; samples.len()];
     if is_first {
@@ -80,6 +80,9 @@ pub fn rows(
     }
     for (i, row) in rows.iter_mut().enumerate().filter(|(_, row)| row.is_none()) {
         *row = margin.and_then(|margin| by_bound(&bounds[i], &margin, limit));
+        if let Some(estimate) = row.as_ref().and_then(|row| row.number("factor_estimate")) {
+            answers.decided(estimate < limit);
+        }
     }
     let open: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].is_none()).collect();
     let places: Vec<usize> = open.iter().map(|&i| samples[i]).collect();

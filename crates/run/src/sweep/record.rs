@@ -3,17 +3,15 @@
 use std::io;
 use std::path::Path;
 
-use enmm::engine_version;
 use enmm_ensemble::{Row, Value};
 use enmm_io::LoadedCase;
-use enmm_io::files::{at_path, write_atomic};
-use enmm_record::input_record;
 use serde_json::{Map, Value as Json, json};
 
 use super::crossing::{Along, Crossing, crossings};
 use super::{Change, Sweep, SweepKind};
 use crate::ensemble::{
-    Answered, EnsembleError, EnsembleOptions, FAILS, NO_VERDICT, SampleOutput, Values, columns, messages, write_table,
+    Answered, EnsembleError, EnsembleOptions, FAILS, NO_VERDICT, SampleOutput, Values, columns, head, write_record,
+    write_table,
 };
 
 /// The samples of a sweep, and what follows from them.
@@ -125,10 +123,7 @@ impl SweepResult {
         let directory = &options.directory;
         self.write_table(&directory.join("sweep.csv"))?;
         self.picture(&loaded.case.title).write(directory, "sweep")?;
-        let path = directory.join("sweep.json");
-        let record = self.record(loaded, options, wall);
-        let text = serde_json::to_vec_pretty(&record).map_err(io::Error::from).map_err(at_path(&path))?;
-        write_atomic(&path, &text)
+        write_record(&directory.join("sweep.json"), &self.record(loaded, options, wall))
     }
 
     /// A row for each sample that has an answer; keys that a sample leaves as they are have no value.
@@ -143,33 +138,20 @@ impl SweepResult {
         write_table(path, &keys, columns(self.sweep.output), rows)
     }
 
-    fn record(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> Json {
-        let changes: Vec<Json> = self.sweep.changes.iter().map(change).collect();
-        let samples: Vec<Json> = (0..self.rows.len()).map(|k| self.sample(k)).collect();
-        let mut record = json!({
-            "title": loaded.case.title,
-            "version": engine_version(),
-            "case_file": loaded.source.file(),
-            "case_hash": loaded.hash,
-            "settings": loaded.settings,
-            "store": options.store,
-            "options": options.search.given(),
-            "kind": self.sweep.kind.name(),
-            "output": self.sweep.output.name(),
-            "limit": self.limit,
-            "keys": changes,
-            "samples": samples,
-            "without_answer": messages(&self.failed),
-            "doubtful": messages(&self.doubtful),
-            "input": input_record(loaded),
-            "wall_seconds": wall,
-        });
+    fn record(&self, loaded: &LoadedCase, options: &EnsembleOptions, wall: f64) -> Map<String, Json> {
+        let mut record = head(loaded, options, [&self.failed, &self.doubtful], wall);
+        let mut add = |name: &str, value: Json| drop(record.insert(name.to_owned(), value));
+        add("kind", json!(self.sweep.kind.name()));
+        add("output", json!(self.sweep.output.name()));
+        add("limit", json!(self.limit));
+        add("keys", self.sweep.changes.iter().map(change).collect());
+        add("samples", (0..self.rows.len()).map(|k| self.sample(k)).collect());
         match self.sweep.kind {
             SweepKind::Tornado => {
-                record["of_the_case"] = json!(self.output(0));
-                record["effects"] = self.effects().iter().map(effect).collect();
+                add("of_the_case", json!(self.output(0)));
+                add("effects", self.effects().iter().map(effect).collect());
             }
-            _ => record["crossings"] = self.crossings().iter().map(crossing).collect(),
+            _ => add("crossings", self.crossings().iter().map(crossing).collect()),
         }
         record
     }

@@ -43,13 +43,14 @@ pub fn staged_rock(case: &Case) -> Result<(Simulation, Vec<String>), Invalid> {
     case.hold_quiet_edges();
     refuse_motion(&case)?;
     refuse_curves(&case)?;
+    refuse_bonds(&case)?;
     if case.yields() {
         refuse_points(&case)?;
     }
     // No element takes part, so that none yields, and no doubt about elements that yield has a place.
     for rock in case.rocks.values_mut() {
         (rock.friction_deg, rock.cohesion, rock.hoek_brown) = (None, None, None);
-        (rock.dilation_deg, rock.tension) = (None, None);
+        (rock.dilation_deg, rock.tension, rock.plane_of_weakness) = (None, None, None);
     }
     let mut simulation = Simulation::new(case)?;
     while simulation.next_stage()? {}
@@ -117,13 +118,29 @@ fn refuse_curves(case: &Case) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// What acts on a point or on a whole block, in rock that yields: no stress that is finite carries it.
+/// Bars that slip in their grout: their force follows from how far the rock moves.
+fn refuse_bonds(case: &Case) -> Result<(), Invalid> {
+    if let Some(k) = case.bolts.iter().position(|bolt| bolt.bond.is_some()) {
+        let message = "is given, but limit analysis takes bars that are fixed to the rock beside each joint: use \
+                       `enmm fos`, or leave it out and give a `yield_force` that the bond can carry";
+        return Err(refused(Key::root().field("bolt").index(k).field("bond"), message));
+    }
+    Ok(())
+}
+
+/// Rock that yields under plane stress or along planes, and what acts there on a point or on a whole block: no stress
+/// that is finite carries it.
 fn refuse_points(case: &Case) -> Result<(), Invalid> {
     let root = Key::root();
     for (name, rock) in &case.rocks {
         if rock.plane == Plane::Stress {
             let message = "is \"stress\", but limit analysis takes rock that yields in plane strain: use \"strain\"";
             return Err(refused(root.field("rock").field(name).field("plane"), message));
+        }
+        if rock.plane_of_weakness.is_some() {
+            let message = "is given, but limit analysis takes rock that is as strong in all directions: use \
+                           `enmm fos`, or leave it out";
+            return Err(refused(root.field("rock").field(name).field("plane_of_weakness"), message));
         }
     }
     for (k, fix) in case.fixes.iter().enumerate() {

@@ -74,7 +74,7 @@ fn kept(friction_deg: f64, dilation_deg: f64, factor: f64) -> f64 {
     cos * cos_of / (1.0 - sin * sin_of)
 }
 
-/// The least of these shares of the rocks that yield and of the joints.
+/// The least of these shares of the rocks that yield, of their planes of weakness and of the joints.
 fn least_kept(case: &Case, factor: f64) -> f64 {
     let of_rock = |rock: &Rock| {
         let dilation = rock.dilation_deg.unwrap_or_default();
@@ -85,8 +85,10 @@ fn least_kept(case: &Case, factor: f64) -> f64 {
         }
     };
     let rocks = case.rocks.values().filter(|rock| rock.yields()).map(of_rock);
+    let planes = case.rocks.values().filter_map(|rock| rock.plane_of_weakness.as_ref());
+    let planes = planes.map(|plane| kept(plane.friction_deg, plane.dilation_deg, factor));
     let joints = case.joint_laws.values().map(|law| kept(law.friction_deg, law.dilation_deg, factor));
-    rocks.chain(joints).fold(1.0, f64::min)
+    rocks.chain(planes).chain(joints).fold(1.0, f64::min)
 }
 
 /// What to say of an F that was not stable, with the lower bound and the share of the strength that flow leaves.

@@ -9,6 +9,7 @@ mod judge;
 mod lost;
 mod mechanism;
 mod reference;
+pub mod seismic;
 mod series;
 mod setting;
 mod slip;
@@ -32,9 +33,11 @@ pub use mechanism::{CHIP, MechanismOptions, mechanisms};
 pub use series::Series;
 pub use setting::Geometry;
 pub use slip::slide;
+pub use trial::Begun;
 
 use series::Trials;
 use setting::Setting;
+use trial::Ended;
 
 /// Least and greatest F that trials reach when none are given.
 pub const FACTOR_RANGE: [f64; 2] = [0.05, 20.0];
@@ -172,6 +175,19 @@ pub enum End {
     Failed(StepError),
 }
 
+impl End {
+    /// A word for it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Found => "found",
+            Self::StableThroughout => "stable_throughout",
+            Self::UnstableThroughout => "unstable_throughout",
+            Self::Interrupted => "interrupted",
+            Self::Failed(_) => "failed",
+        }
+    }
+}
+
 /// Most triangles of the first meshes of limit analysis beside a search, and of the last: twice as many from one to the
 /// next until the bounds are close, some 30 s of a processor together. Time itself decides nothing, so that a case has
 /// the same bounds on any machine.
@@ -210,6 +226,8 @@ pub struct Reduction {
     pub warnings: Vec<String>,
     /// The model at the end of the least trial that was not stable, else at rest.
     pub simulation: Simulation,
+    /// How the motion of that trial began; none at rest.
+    pub begun: Option<Begun>,
 }
 
 impl Reduction {
@@ -281,9 +299,23 @@ pub fn factor_of_safety(
     options: &ReductionOptions,
     hear: &mut (dyn FnMut(&Trial, Progress) + Send),
 ) -> Result<Reduction, ReductionError> {
+    reduce(case, options, |case| SecondOpinion::of(case, options), hear)
+}
+
+/// Trials between the limits of `options` alone, without limit analysis beside them.
+fn stands(case: &Case, options: &ReductionOptions) -> Result<Reduction, ReductionError> {
+    reduce(case, options, |_| SecondOpinion::none("not asked for".to_owned()), &mut |_, _| ())
+}
+
+fn reduce(
+    case: &Case,
+    options: &ReductionOptions,
+    opinion: impl FnOnce(&Case) -> SecondOpinion,
+    hear: &mut (dyn FnMut(&Trial, Progress) + Send),
+) -> Result<Reduction, ReductionError> {
     let mut rest = reference::settle(case, options)?;
     let base = trial::Base::new(rest.simulation, options.tolerance);
-    let opinion = SecondOpinion::of(case, options);
+    let opinion = opinion(case);
     let limits = [options.low, options.high];
     let range = [options.low.unwrap_or(FACTOR_RANGE[0]), options.high.unwrap_or(FACTOR_RANGE[1])];
     let start = bracket::start(limits, opinion.foretold(options.tolerance), range);
@@ -310,11 +342,10 @@ pub fn factor_of_safety(
     };
     let (mut series, before_nudges) = toppling::nudge(&mut trials, series, &setting, &search);
     trials.down_to_whole_bars(&mut series, &setting, range);
-    let mechanism = toppling::mechanism(&base, &series);
+    let (mechanism, free_area) = (toppling::mechanism(&base, &series), base.free_area());
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
-    let SecondOpinion { bound, bracket, ends } = opinion;
     let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
-    let free_area = base.free_area();
+    let Ended { simulation, begun } = failed.unwrap_or(Ended { simulation: base.simulation, begun: None });
     let mut reduction = Reduction {
         trials: series.trials,
         low: series.low,
@@ -326,11 +357,12 @@ pub fn factor_of_safety(
         lost,
         rest: rest.effort,
         free_area,
-        bound,
-        bracket,
-        ends,
+        bound: opinion.bound,
+        bracket: opinion.bracket,
+        ends: opinion.ends,
         warnings: rest.warnings,
-        simulation: failed.unwrap_or(base.simulation),
+        simulation,
+        begun,
     };
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);
@@ -345,25 +377,28 @@ struct SecondOpinion {
 }
 
 impl SecondOpinion {
+    fn none(why: String) -> Self {
+        Self { bound: Err(why), bracket: None, ends: None }
+    }
+
     fn of(case: &Case, options: &ReductionOptions) -> Self {
-        let none = |why: String| Self { bound: Err(why), bracket: None, ends: None };
         if options.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed)) {
-            return none("interrupted".to_owned());
+            return Self::none("interrupted".to_owned());
         }
         if case.yields() {
             return match close_bracket(case) {
                 Ok(bracket) => {
-                    Self { bracket: Some(bracket), ..none("rock yields, and blocks are not rigid".to_owned()) }
+                    Self { bracket: Some(bracket), ..Self::none("rock yields, and blocks are not rigid".to_owned()) }
                 }
-                Err(error) => none(error.to_string()),
+                Err(error) => Self::none(error.to_string()),
             };
         }
         match limit_analysis::bound(case) {
             Ok(bound) => Self { ends: bound.ends.clone(), bound: Ok(bound), bracket: None },
             Err(BoundError::Held { invalid, ends }) => {
-                Self { ends: ends.map(|ends| *ends), ..none(format!("{}: {}", invalid.key, invalid.message)) }
+                Self { ends: ends.map(|ends| *ends), ..Self::none(format!("{}: {}", invalid.key, invalid.message)) }
             }
-            Err(error) => none(error.to_string()),
+            Err(error) => Self::none(error.to_string()),
         }
     }
 

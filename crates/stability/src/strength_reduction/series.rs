@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::bracket::Search;
 use super::setting::{Geometry, Setting};
-use super::trial::{Base, Outcome, Rest};
+use super::trial::{Base, Ended, Outcome, Rest};
 use super::{End, Progress, Trial, Verdict};
 use enmm::model::Simulation;
 use enmm::model::tables::{BlockId, SideId};
@@ -27,7 +27,7 @@ pub struct Series {
     /// The model at the end of the greatest stable trial.
     pub stable: Option<Simulation>,
     /// The model at the end of the least trial that was not stable.
-    pub unstable: Option<Simulation>,
+    pub unstable: Option<Ended>,
 }
 
 impl Series {
@@ -103,7 +103,7 @@ impl Trials<'_> {
         let factor = search.lead()?;
         let real = Setting { geometry: Geometry::Real, ..setting.clone() };
         let (base, interrupt) = (self.base, self.interrupt);
-        let (trial, simulation) = self.one(&|| base.run(factor, &real, None, interrupt)).ok()?;
+        let (trial, Ended { simulation, .. }) = self.one(&|| base.run(factor, &real, None, interrupt)).ok()?;
         let is_stable = trial.verdict == Verdict::Stable;
         if !is_stable {
             search.begin_at(factor);
@@ -116,7 +116,7 @@ impl Trials<'_> {
     /// Goes on with a search by trials of any kind, which are made in pairs, so that two threads can share them.
     pub fn series_of(&mut self, mut search: Search, run: &(dyn Fn(f64) -> Outcome + Sync)) -> Series {
         let (mut trials, mut end) = (Vec::<Trial>::new(), None);
-        let (mut stable, mut unstable) = (None::<(f64, Simulation)>, None::<(f64, Simulation)>);
+        let (mut stable, mut unstable) = (None::<(f64, Simulation)>, None::<(f64, Ended)>);
         while let (None, Some((a, b))) = (&end, search.next()) {
             let both = match b {
                 Some(b) => <[Outcome; 2]>::from(rayon::join(|| run(a), || run(b))).into_iter().collect(),
@@ -124,14 +124,14 @@ impl Trials<'_> {
             };
             for outcome in both {
                 match outcome {
-                    Ok((trial, simulation)) => {
+                    Ok((trial, ended)) => {
                         search.note(trial.factor, trial.verdict);
                         self.tell(&trial, search.expected() - search.made());
                         let factor = trial.factor;
                         if trial.verdict == Verdict::Stable {
-                            keep(&mut stable, factor, simulation, |kept| factor > kept);
+                            keep(&mut stable, factor, ended.simulation, |kept| factor > kept);
                         } else {
-                            keep(&mut unstable, factor, simulation, |kept| factor < kept);
+                            keep(&mut unstable, factor, ended, |kept| factor < kept);
                         }
                         trials.push(trial);
                     }
@@ -142,7 +142,7 @@ impl Trials<'_> {
         trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         let [low, high] = search.bracket();
         let stable = stable.filter(|(factor, _)| Some(*factor) == low).map(|(_, simulation)| simulation);
-        let unstable = unstable.map(|(_, simulation)| simulation);
+        let unstable = unstable.map(|(_, ended)| ended);
         Series { trials, low, high, end: end.unwrap_or_else(|| search.end()), stable, unstable }
     }
 
@@ -183,8 +183,8 @@ impl Trials<'_> {
 }
 
 /// Keeps a model if its factor is better than that of the one that is kept.
-fn keep(kept: &mut Option<(f64, Simulation)>, factor: f64, simulation: Simulation, better: impl Fn(f64) -> bool) {
+fn keep<T>(kept: &mut Option<(f64, T)>, factor: f64, ended: T, better: impl Fn(f64) -> bool) {
     if kept.as_ref().is_none_or(|(kept, _)| better(*kept)) {
-        *kept = Some((factor, simulation));
+        *kept = Some((factor, ended));
     }
 }

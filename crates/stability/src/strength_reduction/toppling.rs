@@ -7,7 +7,7 @@ use super::bracket::Search;
 use super::series::{Series, Trials};
 use super::setting::{Geometry, Setting};
 use super::slip::height_and_gravity;
-use super::trial::{Base, Outcome};
+use super::trial::{Base, Ended, Outcome};
 use super::{FailingBlock, Reason, Trial, Verdict};
 
 /// Acceleration of a nudge over that of gravity.
@@ -32,30 +32,30 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
     let outward = outward(series.trial(series.high));
     let (base, interrupt) = (trials.base, trials.interrupt);
     let nudged = |outcome: Outcome| -> Outcome {
-        let (mut trial, mut simulation) = outcome?;
-        let (height, gravity) = height_and_gravity(&simulation);
+        let (mut trial, mut ended) = outcome?;
+        let (height, gravity) = height_and_gravity(&ended.simulation);
         let time = 2.0 * (height / gravity).sqrt();
         let push = Vector::new(outward * NUDGE * gravity, 0.0);
         for _ in 0..NUDGES {
             if trial.verdict != Verdict::Stable {
                 break;
             }
-            (trial, simulation) = base.push((trial, simulation), push, time, interrupt)?;
+            (trial, ended) = base.push((trial, ended.simulation), push, time, interrupt)?;
             trial.reason = if trial.verdict == Verdict::Stable { Reason::Rest } else { Reason::Nudge };
         }
-        Ok((trial, simulation))
+        Ok((trial, ended))
     };
     let Some((top, resting)) = series.trial(series.low).cloned().zip(series.stable.take()) else {
         return (series, None);
     };
     let low = top.factor;
-    let first = trials.one(&|| nudged(Ok((top.clone(), resting.clone()))));
+    let first = trials.one(&|| nudged(Ok((top.clone(), Ended { simulation: resting.clone(), begun: None }))));
     match first {
         Ok((trial, _)) if trial.verdict == Verdict::Stable => {
             series.stable = Some(resting);
             return (series, Some(before));
         }
-        Ok((trial, simulation)) => replace(&mut series, vec![trial], Some(simulation)),
+        Ok((trial, ended)) => replace(&mut series, vec![trial], Some(ended)),
         Err(stop) => {
             series.end = stop;
             return (series, None);
@@ -74,8 +74,8 @@ pub fn nudge(trials: &mut Trials, mut series: Series, setting: &Setting, search:
 
 /// The way in which the least trial fails that was not stable.
 pub fn mechanism(base: &Base, series: &Series) -> Option<Mechanism> {
-    let (trial, simulation) = series.trial(series.high).zip(series.unstable.as_ref())?;
-    base.mechanism(simulation, &trial.failing)
+    let (trial, ended) = series.trial(series.high).zip(series.unstable.as_ref())?;
+    base.mechanism(&ended.simulation, &trial.failing)
 }
 
 /// Whether blocks turn that fail.
@@ -94,7 +94,7 @@ fn width(simulation: &Simulation, block: &FailingBlock) -> f64 {
 
 /// A warning where blocks turn that have too few elements over their width.
 pub fn coarse(base: &Base, series: &Series, mechanism: Option<Mechanism>) -> Option<String> {
-    let simulation = series.unstable.as_ref().unwrap_or(&base.simulation);
+    let simulation = series.unstable.as_ref().map_or(&base.simulation, |ended| &ended.simulation);
     let trial = series.trial(series.high).filter(|_| turns(mechanism))?;
     let wanted = if simulation.case().yields() { ELEMENTS_YIELDING } else { ELEMENTS };
     let size = simulation.model().covers.mesh.size;
@@ -117,7 +117,7 @@ fn outward(trial: Option<&Trial>) -> f64 {
 }
 
 /// Puts trials in the place of those at the same factors.
-fn replace(series: &mut Series, trials: Vec<Trial>, unstable: Option<Simulation>) {
+fn replace(series: &mut Series, trials: Vec<Trial>, unstable: Option<Ended>) {
     series.trials.retain(|old| trials.iter().all(|new| new.factor != old.factor));
     series.trials.extend(trials);
     series.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));

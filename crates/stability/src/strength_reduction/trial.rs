@@ -51,10 +51,59 @@ pub struct Rest {
 }
 
 /// A trial with the model at its end, or the end of the search where it gave no verdict.
-pub type Outcome = Result<(Trial, Simulation), End>;
+pub type Outcome = Result<(Trial, Ended), End>;
+
+/// A model at the end of a trial.
+#[derive(Debug, Clone)]
+pub struct Ended {
+    /// The model.
+    pub simulation: Simulation,
+    /// How its motion began; none where it was not followed.
+    pub begun: Option<Begun>,
+}
+
+/// A model as the motion of a trial begins, from which it can be made again.
+#[derive(Debug, Clone)]
+pub struct Begun {
+    /// The model.
+    pub simulation: Simulation,
+    fall: Option<Fall>,
+    /// Steps to the end of the trial.
+    steps: u64,
+}
+
+impl Begun {
+    /// Duration of the motion (s).
+    pub fn duration(&self) -> f64 {
+        self.steps as f64 * self.simulation.model().dt
+    }
+
+    /// Makes the motion again, step by step, and shows the model as it begins and after each of so many equal parts.
+    ///
+    /// # Errors
+    /// The first error of `show`; the motion ends early where the trial ended by a numerical failure.
+    pub fn replay<E>(&self, parts: u64, mut show: impl FnMut(&Simulation) -> Result<(), E>) -> Result<(), E> {
+        let mut simulation = self.simulation.clone();
+        let start = simulation.time();
+        show(&simulation)?;
+        for part in 1..=parts {
+            let wanted = self.simulation.state().step + self.steps * part / parts;
+            while simulation.state().step < wanted {
+                let since = simulation.time() - start;
+                self.fall.iter().for_each(|fall| fall.act(&mut simulation, since));
+                if simulation.advance(false).is_err() {
+                    return Ok(());
+                }
+            }
+            show(&simulation)?;
+        }
+        Ok(())
+    }
+}
 
 /// A fall of strength to that of a trial, by equal ratios in equal times, so that joints take up their load one after
 /// the other and nothing is thrown (Eq. 60a).
+#[derive(Debug, Clone)]
 struct Fall {
     /// Strength factor at its end.
     end: f64,
@@ -184,7 +233,7 @@ impl Base {
         simulation.drive().arrive();
         let blank = Trial { factor, geometry: setting.geometry, ..Trial::default() };
         let time = (self.scales.ramp * libm::log10(depth)).max(self.scales.window);
-        self.follow(blank, simulation, Some(&Fall { end: 1.0 / factor, depth, time }), interrupt)
+        self.follow(blank, simulation, Some(Fall { end: 1.0 / factor, depth, time }), interrupt)
     }
 
     /// Pushes a slope that has come to rest in a trial, until it has moved some way or moves no more, but for a `time`
@@ -232,11 +281,12 @@ impl Base {
         &self,
         begun_as: Trial,
         mut simulation: Simulation,
-        fall: Option<&Fall>,
+        fall: Option<Fall>,
         interrupt: Option<&AtomicBool>,
     ) -> Outcome {
         let clock = Instant::now();
-        let scales = self.scales.of(fall.map_or(0.0, |fall| fall.time), begun_as.geometry);
+        let scales = self.scales.of(fall.as_ref().map_or(0.0, |fall| fall.time), begun_as.geometry);
+        let start_of_motion = simulation.clone();
         let (start, begun) = (simulation.time(), simulation.state().step);
         let mut samples = Vec::new();
         let mut blocks = Blocks::of(self, &simulation);
@@ -244,7 +294,7 @@ impl Base {
         let (mut first, mut residual) = (None, 0.0);
         let mut judged = None;
         while judged.is_none() {
-            let act = |model: &mut Simulation| fall.into_iter().for_each(|fall| fall.act(model, model.time() - start));
+            let act = |model: &mut Simulation| fall.iter().for_each(|fall| fall.act(model, model.time() - start));
             let last = match window(&mut simulation, steps, act, interrupt)? {
                 Ok(report) => report,
                 Err(error) => {
@@ -282,7 +332,9 @@ impl Base {
             wall: begun_as.wall + clock.elapsed().as_secs_f64(),
             ..begun_as
         };
-        Ok((trial, simulation))
+        let steps = simulation.state().step - begun;
+        let begun = Some(Begun { simulation: start_of_motion, fall, steps });
+        Ok((trial, Ended { simulation, begun }))
     }
 
     /// The way in which blocks have moved since the trial began; none where nothing fails.

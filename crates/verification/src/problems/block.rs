@@ -121,7 +121,7 @@ impl Block {
         let [toe, head] = [0, 1].map(|k| simulation.monitor(k));
         let side = upright + head.0 - toe.0;
         let turned = side.dot(&across).atan2(side.dot(&upright) / self.height);
-        let (slope, element) = (simulation.model(), simulation.built().monitors[1].0);
+        let (slope, element) = (simulation.model(), simulation.built().monitors.points[1].0);
         let block = slope.covers.element_block[element];
         // Counter-clockwise is uphill.
         let spin = -simulation.rigid_motion_of(block).2;

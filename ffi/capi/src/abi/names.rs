@@ -3,7 +3,7 @@
 use libc::c_char;
 
 use super::pointers;
-use crate::numbers::{enmm_inlet_state, enmm_monitor_state};
+use crate::numbers::{enmm_inlet_state, enmm_joint_monitor_state, enmm_monitor_state, enmm_monitor_stress};
 use crate::safe::enter::with_model;
 use crate::types::{enmm_model, enmm_status};
 
@@ -99,4 +99,40 @@ pub unsafe extern "C" fn enmm_get_monitor_state(
 ) -> enmm_status {
     // SAFETY: promised by the host.
     with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.monitor_state(monitor)?, out) })
+}
+
+/// Writes the stress at a monitor with `stress = true`, by its place among the `[[monitor]]`s of the case; NaN where
+/// the rock has been excavated. `out->struct_size` must be set.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or reads no stress, or a struct_size that no version
+/// had, ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_monitor_stress(
+    model: *mut enmm_model,
+    monitor: u32,
+    out: *mut enmm_monitor_stress,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.monitor_stress(monitor)?, out) })
+}
+
+/// Writes the state of a monitor of a joint, by its place among the `[[joint_monitor]]`s of the case; NaN where a side
+/// of the joint has been excavated. `out->struct_size` must be set.
+///
+/// Errors: ENMM_INVALID_ARGUMENT for a monitor that does not exist or a struct_size that no version had,
+/// ENMM_NULL_ARGUMENT.
+///
+/// # Safety
+/// Every pointer is as the head of the header states.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn enmm_get_joint_monitor_state(
+    model: *mut enmm_model,
+    monitor: u32,
+    out: *mut enmm_joint_monitor_state,
+) -> enmm_status {
+    // SAFETY: promised by the host.
+    with_model(model.addr(), |model| unsafe { pointers::fill_struct(&model.joint_monitor_state(monitor)?, out) })
 }

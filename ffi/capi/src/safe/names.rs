@@ -4,11 +4,11 @@ use engine::cosimulation::Named;
 
 use super::failure::Failure;
 use super::model::Model;
-use crate::numbers::{enmm_inlet_state, enmm_monitor_state};
+use crate::numbers::{enmm_inlet_state, enmm_joint_monitor_state, enmm_monitor_state, enmm_monitor_stress};
 use crate::types::{enmm_name_kind, enmm_status};
 
 /// Kinds by their numbers.
-const KINDS: [(enmm_name_kind, Named); 10] = [
+const KINDS: [(enmm_name_kind, Named); 11] = [
     (enmm_name_kind::ENMM_NAME_JOINT, Named::Joint),
     (enmm_name_kind::ENMM_NAME_LAW, Named::Law),
     (enmm_name_kind::ENMM_NAME_ROCK, Named::Rock),
@@ -19,6 +19,7 @@ const KINDS: [(enmm_name_kind, Named); 10] = [
     (enmm_name_kind::ENMM_NAME_HEAD, Named::Head),
     (enmm_name_kind::ENMM_NAME_RAIN, Named::Rain),
     (enmm_name_kind::ENMM_NAME_DRAIN, Named::Drain),
+    (enmm_name_kind::ENMM_NAME_JOINT_MONITOR, Named::JointMonitor),
 ];
 
 /// The kind of a number.
@@ -86,5 +87,21 @@ impl Model {
     /// No such monitor.
     pub fn monitor_state(&self, monitor: u32) -> Result<enmm_monitor_state, Failure> {
         Ok(enmm_monitor_state::from(&self.inner.monitor_state(monitor as usize)?))
+    }
+
+    /// Stress at a monitor.
+    ///
+    /// # Errors
+    /// No such monitor, or one that reads no stress.
+    pub fn monitor_stress(&self, monitor: u32) -> Result<enmm_monitor_stress, Failure> {
+        Ok(enmm_monitor_stress::from(&self.inner.monitor_stress(monitor as usize)?))
+    }
+
+    /// State of a monitor of a joint.
+    ///
+    /// # Errors
+    /// No such monitor.
+    pub fn joint_monitor_state(&self, monitor: u32) -> Result<enmm_joint_monitor_state, Failure> {
+        Ok(enmm_joint_monitor_state::from(&self.inner.joint_monitor_state(monitor as usize)?))
     }
 }

@@ -63,7 +63,7 @@ int main(int argc, char **argv)
         return 2;
     enmm_model *model = NULL, *other = NULL;
     enmm_state *before = NULL, *read = NULL;
-    size_t end_size, size, broken_size, count = 9;
+    size_t end_size, broken_size, count = 9;
     int half = 0;
     OK(enmm_create_from_file(argv[1], &model));
     OK(enmm_state_save(model, &before));
@@ -80,9 +80,7 @@ int main(int argc, char **argv)
         OK(enmm_get_cuts(model, NULL, 0, &count));
         CHECK(blocks(model) == 1 && count == 0);
         act(model, 0, STEPS);
-        unsigned char *again = bytes_of(model, &size);
-        CHECK(size == end_size && memcmp(again, end, size) == 0);
-        free(again);
+        check_bytes(model, end, end_size);
     }
 
     OK(enmm_create_from_file(argv[1], &other));
@@ -90,9 +88,7 @@ int main(int argc, char **argv)
     OK(enmm_state_restore(other, read));
     CHECK(blocks(other) == 2);
     act(other, half, STEPS);
-    unsigned char *again = bytes_of(other, &size);
-    CHECK(size == end_size && memcmp(again, end, size) == 0);
-    free(again);
+    check_bytes(other, end, end_size);
     printf("the bar broke in step %d of %d\n", half, STEPS);
 
     OK(enmm_state_free(before));

@@ -9,11 +9,6 @@
 enum { STEPS = 300, BRIDGES = 3 };
 static const double H = 0.001;
 
-static int same(const unsigned char *a, size_t na, const unsigned char *b, size_t nb)
-{
-    return na == nb && memcmp(a, b, na) == 0;
-}
-
 static double broken(enmm_model *model)
 {
     enmm_totals totals = {.struct_size = sizeof totals};
@@ -63,7 +58,7 @@ int main(int argc, char **argv)
     const int half = middle(argv[1]);
     enmm_model *model = NULL, *other = NULL;
     enmm_state *saved = NULL, *read = NULL;
-    size_t half_size, end_size, size;
+    size_t half_size, end_size;
     OK(enmm_create_from_file(argv[1], &model));
     act(model, 0, half);
     CHECK(broken(model) > 0 && broken(model) < 0.95);
@@ -73,21 +68,15 @@ int main(int argc, char **argv)
     unsigned char *at_end = bytes_of(model, &end_size);
 
     OK(enmm_state_restore(model, saved));
-    unsigned char *again = bytes_of(model, &size);
-    CHECK(same(at_half, half_size, again, size));
-    free(again);
+    check_bytes(model, at_half, half_size);
     act(model, half, STEPS);
-    again = bytes_of(model, &size);
-    CHECK(same(at_end, end_size, again, size));
-    free(again);
+    check_bytes(model, at_end, end_size);
 
     OK(enmm_create_from_file(argv[1], &other));
     OK(enmm_state_deserialize(other, at_half, half_size, &read));
     OK(enmm_state_restore(other, read));
     act(other, half, STEPS);
-    again = bytes_of(other, &size);
-    CHECK(same(at_end, end_size, again, size));
-    free(again);
+    check_bytes(other, at_end, end_size);
 
     OK(enmm_state_free(saved));
     OK(enmm_state_free(read));

@@ -3,7 +3,10 @@
 use std::ffi::CString;
 
 use enmm::cosimulation::{EventKind, PORT_QUANTITIES, PortState, TOTALS, Totals};
-use enmm::model::{BLOCK_QUANTITIES, ENERGIES, INLET_QUANTITIES, MONITOR_QUANTITIES};
+use enmm::model::{
+    BLOCK_QUANTITIES, ENERGIES, INLET_QUANTITIES, JOINT_MONITOR_QUANTITIES, MONITOR_QUANTITIES,
+    MONITOR_STRESS_QUANTITIES,
+};
 
 use crate::log::Status;
 use crate::phase::{Call, Phase};
@@ -121,6 +124,13 @@ impl Instance {
             Quantity::Port(k, place) => values[0] = (PORT_QUANTITIES[place].get)(self.port(k, place)),
             Quantity::Monitor(k, place) => {
                 values[0] = (MONITOR_QUANTITIES[place].get)(&self.model.simulation().monitor(k));
+            }
+            Quantity::MonitorStress(k, place) => {
+                let stress = self.model.simulation().monitor_stress(k);
+                values[0] = stress.map_or(f64::NAN, |stress| (MONITOR_STRESS_QUANTITIES[place].get)(&stress));
+            }
+            Quantity::JointMonitor(k, place) => {
+                values[0] = (JOINT_MONITOR_QUANTITIES[place].get)(&self.model.simulation().joint_monitors()[k]);
             }
             Quantity::Total(total) => values[0] = self.total(total),
             Quantity::Inlet(kind, k, place) => {
