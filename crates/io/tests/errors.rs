@@ -605,7 +605,7 @@ fn skins_say_their_limits() {
         ("line = [[0, 0]]", "skin[0].line: has 1 points, must have at least 2"),
         ("line = [[0, 0], [0, 0]]", "skin[0].line[1]: is the same as the point before"),
         ("line = [[0, 0], [1, 0]]\nactive = false", "skin[0].active: is false, and without a name"),
-        ("line = [[0, 0], [1, 0]]\ntension = 3e6\nrupture_strain = 1e-5", "skin[0].rupture_strain: is 0.00001"),
+        ("line = [[0, 0], [1, 0]]\ntension = 3e6\nrupture_strain = 1e-5", "skin[0].rupture_strain: is 1e-5"),
         ("line = [[0, 0], [9, 0]]\ndistance = 1e-9", "skin[0].distance: gives 10001 points"),
         ("line = [[0, 0], [1, 0]]\ntension = -1", "skin[0].tension: is -1 Pa"),
     ] {

@@ -12,7 +12,7 @@ use enmm_io::{LoadedCase, checkpoint};
 use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note};
 
-use crate::along::{ALONG, has_bonds, write_along};
+use crate::along::{ALONG, write_along};
 use crate::blocks::write_blocks;
 use crate::breaks::SectionRecord;
 use crate::earthquake::{self, EarthquakeRecord};
@@ -429,9 +429,7 @@ impl Recorder {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
         write_blocks(&self.directory.join("blocks.csv"), simulation)?;
-        if has_bonds(simulation) {
-            write_along(&self.directory.join(ALONG), simulation)?;
-        }
+        write_along(&self.directory.join(ALONG), simulation)?;
         let flows = FlowRecord::all(simulation);
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;

@@ -113,8 +113,8 @@ pub fn document(record: &Record) -> String {
     paragraph(
         &mut out,
         "An error is relative to the exact value unless it has a unit. A tolerance is derived, for the reason whose \
-         number it cites; a value outside its tolerance is **MISSED**. Exact values are closed forms evaluated with the \
-         problem's parameters unless marked as published or numerical. `shown only` marks values for comparison.",
+         number it cites; a value outside its tolerance is **MISSED**. Exact values are closed forms evaluated with \
+         the problem's parameters unless marked as published or numerical. `shown only` marks values for comparison.",
     );
     missed_section(&mut out, record);
     contents(&mut out, record);

@@ -18,8 +18,8 @@ pub fn figure(record: &Record, name: &str, caption: &str) -> String {
     // The section needs a page for its legend; others go two to a page.
     let class = if name == "model" { " class=\"whole\"" } else { "" };
     format!(
-        "<figure{class}>\n<img alt=\"{caption}\" src=\"data:image/svg+xml;base64,{}\">\n<figcaption>{caption}</figcaption>\n\
-         </figure>\n",
+        "<figure{class}>\n<img alt=\"{caption}\" src=\"data:image/svg+xml;base64,{}\">\n\
+         <figcaption>{caption}</figcaption>\n</figure>\n",
         STANDARD.encode(svg)
     )
 }
