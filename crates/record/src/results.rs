@@ -12,9 +12,9 @@ use enmm_observe::{
     Joints, Polygons, Snapshot, WaterInJoints, broken_sections, moved_since, references, rock_sections, water_surface,
 };
 use enmm_picture::{
-    StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture, history_picture,
-    joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations, model_picture,
-    number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
+    Picture, StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture,
+    history_picture, joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations,
+    model_picture, number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
 };
 use enmm_report::FILM;
 
@@ -224,11 +224,7 @@ pub fn draw_stage(
                 let flow = WaterInJoints::of(simulation);
                 flow.map(|flow| flow_picture(&stage, &flow)).into_iter().collect()
             }
-            PictureKind::Lines if simulation.case().lines.is_empty() => Vec::new(),
-            PictureKind::Lines => {
-                let lines = [lines, &LineRecord::all(simulation)].concat();
-                vec![lines_picture(stage.title, &stage.caption, &profiles(&lines))]
-            }
+            PictureKind::Lines => lines_so_far(&stage, lines, &LineRecord::all(simulation)),
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
             PictureKind::Stress => vec![stress_picture(&stage)],
@@ -255,6 +251,12 @@ fn stage_caption(simulation: &Simulation) -> String {
         StageKind::Dynamic => format!(", t = {} s", number_text(simulation.time())),
     };
     format!("stage {number}, {}{time}", stage.name)
+}
+
+/// The picture of lines at the ends of the stages before and of this one; none of a case without lines.
+fn lines_so_far(stage: &StageEnd, before: &[LineRecord], now: &[LineRecord]) -> Vec<Picture> {
+    let profiles = profiles(&[before, now].concat());
+    if now.is_empty() { Vec::new() } else { vec![lines_picture(stage.title, &stage.caption, &profiles)] }
 }
 
 /// Outer loops and holes of the case.
