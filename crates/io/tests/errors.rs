@@ -73,8 +73,7 @@ fn wrong_type_says_expected_and_found() {
 #[test]
 fn wrong_type_names_all_types_and_words() {
     let kinds = "model, deformed, history, energy, displacement, joints, joint_stress, stress, velocity, covers, \
-                 displacement_contours, mean_stress_contours, strength, flow, lines, \
-                 spectra";
+                 displacement_contours, mean_stress_contours, strength, flow, lines, spectra";
     for (value, shown) in [("3", "the integer 3"), ("\"model\"", "the string \"model\"")] {
         assert_refused(
             "frame_interval = 0.5",

@@ -18,11 +18,14 @@ pub fn has_bonds(simulation: &Simulation) -> bool {
 
 /// Writes the segments of all such bars: the number and name of the bolt, the middle of the segment from the head and
 /// in the reference configuration, the tension of one bar, its slip along the rock towards the far end, and its state;
-/// digits read back to the same numbers.
+/// digits read back to the same numbers. Without such bars there is no file.
 ///
 /// # Errors
 /// Whatever the file system refuses, with the path in the message.
 pub fn write_along(path: &Path, simulation: &Simulation) -> io::Result<()> {
+    if !has_bonds(simulation) {
+        return Ok(());
+    }
     let mut csv = csv::Writer::from_writer(Vec::new());
     csv.write_record(COLUMNS).map_err(io::Error::from).map_err(at_path(path))?;
     for line in bolts(simulation) {

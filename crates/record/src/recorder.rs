@@ -12,7 +12,7 @@ use enmm_io::{LoadedCase, checkpoint};
 use enmm_observe::{Joints, Snapshot};
 use enmm_report::{Axis, FILM, Note};
 
-use crate::along::{ALONG, has_bonds, write_along};
+use crate::along::{ALONG, write_along};
 use crate::blocks::write_blocks;
 use crate::breaks::SectionRecord;
 use crate::earthquake::{self, EarthquakeRecord};
@@ -429,20 +429,12 @@ impl Recorder {
         let Closing { loaded, status, failure, coupled } = closing;
         self.history.check_place()?;
         write_blocks(&self.directory.join("blocks.csv"), simulation)?;
-        if has_bonds(simulation) {
-            write_along(&self.directory.join(ALONG), simulation)?;
-        }
+        write_along(&self.directory.join(ALONG), simulation)?;
         let flows = FlowRecord::all(simulation);
         if !flows.is_empty() {
             write_flow(&self.directory.join(FLOW), &flows)?;
         }
-        let mut lines = self.progress.lines.clone();
-        if self.progress.done.len() <= simulation.state().stage as usize {
-            lines.extend(LineRecord::all(simulation));
-        }
-        if !lines.is_empty() {
-            write_lines(&self.directory.join(LINES), &lines)?;
-        }
+        let lines = self.close_lines(simulation)?;
         let earthquakes = self.close_earthquakes(simulation)?;
         if status != RunStatus::Interrupted {
             results::draw_end(simulation, &earthquakes, &self.directory)?;
@@ -496,6 +488,18 @@ impl Recorder {
         let doubts: Vec<String> = earthquakes.iter().filter_map(EarthquakeRecord::doubt).collect();
         doubts.into_iter().try_for_each(|text| self.warn(simulation, text))?;
         Ok(earthquakes)
+    }
+
+    /// Writes the lines at the ends of the stages so far, and of one that is not over as they are now.
+    fn close_lines(&self, simulation: &Simulation) -> io::Result<Vec<LineRecord>> {
+        let mut lines = self.progress.lines.clone();
+        if self.progress.done.len() <= simulation.state().stage as usize {
+            lines.extend(LineRecord::all(simulation));
+        }
+        if !lines.is_empty() {
+            write_lines(&self.directory.join(LINES), &lines)?;
+        }
+        Ok(lines)
     }
 
     fn wall(&self, simulation: &Simulation) -> WallSeconds {

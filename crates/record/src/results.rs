@@ -12,9 +12,9 @@ use enmm_observe::{
     Joints, Polygons, Snapshot, WaterInJoints, broken_sections, moved_since, references, rock_sections, water_surface,
 };
 use enmm_picture::{
-    StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture, history_picture,
-    joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations, model_picture,
-    number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
+    Picture, StageEnd, bolt_marks, covers_picture, displacement_contours, displacement_picture, flow_picture,
+    history_picture, joint_stress_pictures, joints_picture, lines_picture, mean_stress_contours, model_annotations,
+    model_picture, number_text, stage_displacement_picture, stars, strength_picture, stress_picture, velocity_picture,
 };
 use enmm_report::FILM;
 
@@ -203,13 +203,7 @@ pub fn draw_stage(
     }
     let snapshot = Snapshot::of(simulation);
     let (bolts, water) = (bolt_marks(simulation), water_surface(simulation));
-    let number = simulation.state().stage + 1;
-    let stage = simulation.stage();
-    let time = match stage.kind {
-        StageKind::Static => String::new(),
-        StageKind::Dynamic => format!(", t = {} s", number_text(snapshot.time)),
-    };
-    let caption = format!("stage {number}, {}{time}", stage.name);
+    let (number, caption) = (simulation.state().stage + 1, stage_caption(simulation));
     let stage =
         StageEnd { title: &simulation.case().title, caption, snapshot: &snapshot, bolts: &bolts, water: &water };
     for (kind, names) in STAGE_PICTURES.into_iter().filter(|(kind, _)| pictures.include(*kind)) {
@@ -230,11 +224,7 @@ pub fn draw_stage(
                 let flow = WaterInJoints::of(simulation);
                 flow.map(|flow| flow_picture(&stage, &flow)).into_iter().collect()
             }
-            PictureKind::Lines if simulation.case().lines.is_empty() => Vec::new(),
-            PictureKind::Lines => {
-                let lines = [lines, &LineRecord::all(simulation)].concat();
-                vec![lines_picture(stage.title, &stage.caption, &profiles(&lines))]
-            }
+            PictureKind::Lines => lines_so_far(&stage, lines, &LineRecord::all(simulation)),
             PictureKind::Joints => vec![joints_picture(&stage, &joints.now(simulation))],
             PictureKind::JointStress => joint_stress_pictures(&stage, &joints.now(simulation)).into(),
             PictureKind::Stress => vec![stress_picture(&stage)],
@@ -251,6 +241,22 @@ pub fn draw_stage(
         }
     }
     Ok(())
+}
+
+/// Number, name and, where it is dynamic, time of a stage, as its pictures have them.
+fn stage_caption(simulation: &Simulation) -> String {
+    let (number, stage) = (simulation.state().stage + 1, simulation.stage());
+    let time = match stage.kind {
+        StageKind::Static => String::new(),
+        StageKind::Dynamic => format!(", t = {} s", number_text(simulation.time())),
+    };
+    format!("stage {number}, {}{time}", stage.name)
+}
+
+/// The picture of lines at the ends of the stages before and of this one; none of a case without lines.
+fn lines_so_far(stage: &StageEnd, before: &[LineRecord], now: &[LineRecord]) -> Vec<Picture> {
+    let profiles = profiles(&[before, now].concat());
+    if now.is_empty() { Vec::new() } else { vec![lines_picture(stage.title, &stage.caption, &profiles)] }
 }
 
 /// Outer loops and holes of the case.
