@@ -21,19 +21,3 @@ impl Parting {
         apart.dot(&outward) > self.opening || apart.dot(&along).abs() > self.slip
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn faces_part_by_slip_or_by_opening_and_come_back() {
-        let parting = Parting { slip: 0.5, opening: 0.05 };
-        let face = |x: f64, y: f64| [Point::new(x, y), Point::new(x + 3.0, y + 4.0)];
-        // Outward of the first face is (0.8, -0.6), along it (0.6, 0.8).
-        let moved = |along: f64, across: f64| face(0.6 * along + 0.8 * across, 0.8 * along - 0.6 * across);
-        let has_come = |along, across| parting.has_come([face(0.0, 0.0), moved(along, across)]);
-        assert!(!has_come(0.0, 0.0) && !has_come(0.49, 0.049) && !has_come(-0.49, -3.0));
-        assert!(has_come(0.51, 0.0) && has_come(-0.51, 0.0) && has_come(0.0, 0.051));
-    }
-}

@@ -36,8 +36,8 @@ impl Simulation {
     /// Finds the flow again before an internal step where it is due: before the first step of a static stage, whose
     /// inputs a host may have set, and on the grid of a dynamic stage that follows them. The steady one is found if
     /// something around the net has changed; one that goes on in time does so up to the next such step, with what is
-    /// around it now. The apertures are those of the start of the last static stage, but the greatest one where faces have
-    /// parted.
+    /// around it now. The apertures are those of the start of the last static stage, but the greatest one where faces
+    /// have parted.
     ///
     /// # Errors
     /// No flow has been found.

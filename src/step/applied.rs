@@ -43,8 +43,8 @@ fn pushes(model: &Model, state: &State) -> bool {
         })
 }
 
-/// Gives what loads and inputs push with at time `t` (s); inputs and water act by the ramp of a static stage, as gravity
-/// does.
+/// Gives what loads and inputs push with at time `t` (s); inputs and water act by the ramp of a static stage, as
+/// gravity does.
 pub fn push_forces(model: &Model, state: &State, regime: Regime, t: f64, force: &mut (impl Forces + ?Sized)) {
     let ramp = super::ramp(regime, t - state.stage_start);
     for load in &model.loads {

@@ -174,8 +174,8 @@ impl Quiet {
 }
 
 impl Case {
-    /// Lets fixities hold what quiet boundaries and free fields hold in static stages, in their place, for a search that
-    /// knows no waves; ports of quiet boundaries go with them.
+    /// Lets fixities hold what quiet boundaries and free fields hold in static stages, in their place, for a search
+    /// that knows no waves; ports of quiet boundaries go with them.
     pub fn hold_quiet_edges(&mut self) {
         let quiets = self.quiets.drain(..).map(|quiet| (quiet.edge, quiet.axes));
         let sides = self.free_fields.drain(..).map(|side| (side.edge, side.axes));

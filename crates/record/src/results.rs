@@ -203,13 +203,7 @@ pub fn draw_stage(
     }
     let snapshot = Snapshot::of(simulation);
     let (bolts, water) = (bolt_marks(simulation), water_surface(simulation));
-    let number = simulation.state().stage + 1;
-    let stage = simulation.stage();
-    let time = match stage.kind {
-        StageKind::Static => String::new(),
-        StageKind::Dynamic => format!(", t = {} s", number_text(snapshot.time)),
-    };
-    let caption = format!("stage {number}, {}{time}", stage.name);
+    let (number, caption) = (simulation.state().stage + 1, stage_caption(simulation));
     let stage =
         StageEnd { title: &simulation.case().title, caption, snapshot: &snapshot, bolts: &bolts, water: &water };
     for (kind, names) in STAGE_PICTURES.into_iter().filter(|(kind, _)| pictures.include(*kind)) {
@@ -247,6 +241,16 @@ pub fn draw_stage(
         }
     }
     Ok(())
+}
+
+/// Number, name and, where it is dynamic, time of a stage, as its pictures have them.
+fn stage_caption(simulation: &Simulation) -> String {
+    let (number, stage) = (simulation.state().stage + 1, simulation.stage());
+    let time = match stage.kind {
+        StageKind::Static => String::new(),
+        StageKind::Dynamic => format!(", t = {} s", number_text(simulation.time())),
+    };
+    format!("stage {number}, {}{time}", stage.name)
 }
 
 /// The picture of lines at the ends of the stages before and of this one; none of a case without lines.

@@ -344,8 +344,7 @@ fn reduce(
     trials.down_to_whole_bars(&mut series, &setting, range);
     let (mechanism, free_area) = (toppling::mechanism(&base, &series), base.free_area());
     rest.warnings.extend(toppling::coarse(&base, &series, mechanism));
-    let failed = lost.as_ref().and_then(|lost| lost.unstable.clone()).or(series.unstable);
-    let Ended { simulation, begun } = failed.unwrap_or(Ended { simulation: base.simulation, begun: None });
+    let Ended { simulation, begun } = ended(lost.as_ref(), series.unstable, base.simulation);
     let mut reduction = Reduction {
         trials: series.trials,
         low: series.low,
@@ -367,6 +366,12 @@ fn reduce(
     let doubts = doubt::doubts(&reduction, case);
     reduction.warnings.extend(doubts);
     Ok(reduction)
+}
+
+/// The slope that is shown: at the end of the least trial that fails, of rock that is lost first, or else at rest.
+fn ended(lost: Option<&Series>, unstable: Option<Ended>, rest: Simulation) -> Ended {
+    let failed = lost.and_then(|lost| lost.unstable.clone()).or(unstable);
+    failed.unwrap_or(Ended { simulation: rest, begun: None })
 }
 
 /// Limit analysis beside a search: of rigid blocks with the ends that decide about their bound, or of rock that yields.
