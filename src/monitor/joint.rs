@@ -71,6 +71,8 @@ pub struct JointMonitor {
     faces: Vec<usize>,
     /// Greatest distance (m) along the joint at which they count.
     reach: f64,
+    /// Length (m) of the face, over which their forces act; none where those near count, over their own lengths.
+    face_length: Option<f64>,
 }
 
 impl JointMonitor {
@@ -93,7 +95,13 @@ impl JointMonitor {
         };
         counted.sort_unstable();
         counted.dedup();
-        Self { place: place.place, anchors, faces: counted, reach }
+        let of_face = faces.pieces.iter().filter(|piece| piece.face == own.face);
+        let length_of = |piece: &Facing| {
+            let [a, b] = reference_ends(boundary, piece);
+            (b - a).norm()
+        };
+        let face_length = length.is_none().then(|| of_face.map(length_of).sum());
+        Self { place: place.place, anchors, faces: counted, reach, face_length }
     }
 
     /// The joint now, by the contacts of now.
@@ -118,7 +126,9 @@ impl JointMonitor {
         [apart.dot(&normal), apart.perp(&normal)]
     }
 
-    /// Normal and shear stress (Pa): forces over lengths of the contacts that are closed and near.
+    /// Normal and shear stress (Pa): forces of the contacts that are closed, over the length of the face, or of those
+    /// that are near over their lengths. Contacts at corners stand for less than half of the way to the next node, so
+    /// that the lengths of all do not add up to that of the face.
     fn stress(&self, model: &Model, faces: &Faces, displacement: &[Vector], contacts: &[VertexEdge]) -> [f64; 2] {
         let boundary = &model.boundary;
         let [first, second] = self.anchors.map(|anchor| self.place + moved(model, displacement, anchor));
@@ -146,6 +156,7 @@ impl JointMonitor {
             sums = [0, 1, 2].map(|k| sums[k] + of[k]);
         }
         let [normal, shear, length] = sums;
+        let length = self.face_length.unwrap_or(length);
         if length > 0.0 { [normal / length, shear / length] } else { [0.0; 2] }
     }
 }
