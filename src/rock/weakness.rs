@@ -279,7 +279,7 @@ mod tests {
                 [50.0 * number(), 2e5 + 3e6 * number(), number()],
                 [45.0 * number(), 1e6 * number(), number()],
                 std::f64::consts::PI * number(),
-                (case % 3 == 0).then(|| 0.0),
+                (case % 3 == 0).then_some(0.0),
                 case % 2 == 0,
             );
             let mut number = || (2.0 * number() - 1.0) * 2e7;
