@@ -155,12 +155,16 @@ impl Both<'_> {
             rock = (self.rock)(&self.less(trial, &plane)).unwrap_or_default();
             let next = self.of_plane(&self.less(trial, &rock)).unwrap_or_default();
             let change = [0, 1, 2, 3].map(|k| next[k] - plane[k]);
-            let moved = (self.relief)(&change).iter().fold(0.0f64, |most, stress| most.max(stress.abs()));
+            let moved = greatest(&(self.relief)(&change));
             plane = next;
             if moved <= agreed {
                 break;
             }
-            plane = changes.ahead(plane, change);
+            // A leap that takes off more than there is belongs to flows of both surfaces that undo each other.
+            let ahead = changes.ahead(plane, change);
+            if greatest(&(self.relief)(&ahead)) <= greatest(&self.less(trial, &rock)) {
+                plane = ahead;
+            }
         }
         Some(self.rest(trial, sum(&rock, &plane)))
     }
@@ -217,6 +221,11 @@ impl Changes {
             _ => plane,
         }
     }
+}
+
+/// Size of the greatest part of a stress.
+fn greatest(stress: &[f64; 4]) -> f64 {
+    stress.iter().fold(0.0, |most, part| most.max(part.abs()))
 }
 
 fn sum(a: &PlasticStrain, b: &PlasticStrain) -> PlasticStrain {
@@ -292,7 +301,8 @@ mod tests {
             let stress = [0, 1, 2, 3].map(|k| trial[k] - relief[k]);
             assert!(surface.excess(stress) <= 1e-9 * 6e7, "{strength:?} {trial:?} {stress:?}");
             assert!(surface.flow(stress).is_none(), "{strength:?} {trial:?} {stress:?}");
-            assert!(work(&stress, &flow) >= -1e-9 * 6e7 * flow.iter().fold(0.0f64, |m, f| m.max(f.abs())));
+            let most = flow.iter().fold(0.0f64, |most, part| most.max(part.abs()));
+            assert!(most < 0.3 && work(&stress, &flow) >= -1e-9 * 6e7 * most, "{strength:?} {trial:?} {flow:?}");
             yielded += u32::from(flow != [0.0; 4]);
             let plane = strength.weakness.map(|weakness| weakness.plane(1.0));
             let alone = YieldingRock { weakness: None, ..strength }.surface(1.0);

@@ -44,7 +44,7 @@ pub struct Meshes {
     middles: Vec<(usize, [f64; 2])>,
     /// Edges of joints.
     joints: usize,
-    before: Option<[Series; 4]>,
+    before: Before,
 }
 
 /// Parts of the bytes of elements.
@@ -73,9 +73,12 @@ impl Planes {
     }
 }
 
+/// Numbers of elements and joints of a frame, as a reader has them; none where the next stand for themselves.
+pub type Before = Option<[Series; 4]>;
+
 /// Numbers in quanta, part by part.
 #[derive(Debug, Clone)]
-struct Series {
+pub struct Series {
     quantum: f64,
     parts: Vec<Vec<i32>>,
 }
@@ -146,9 +149,14 @@ impl Meshes {
         Ok(())
     }
 
-    /// Forgets the numbers before: the next ones stand for themselves.
-    pub fn forget(&mut self) {
-        self.before = None;
+    /// The numbers of the frame before, as [`Self::recall`] takes them.
+    pub fn remembered(&self) -> Before {
+        self.before.clone()
+    }
+
+    /// Takes the numbers of the frame before; without them the next ones stand for themselves.
+    pub fn recall(&mut self, before: Before) {
+        self.before = before;
     }
 
     /// Bytes of the numbers of elements and joints at a time (s), where blocks have the `numbers` that a reader has.

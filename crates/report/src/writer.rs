@@ -9,6 +9,7 @@ use enmm_io::files::{Unfinished, open_result, remove_if_there};
 use crate::block::{self, Outlined, Shape};
 use crate::chunk::{self, Chunk, Chunks, Kind, MAGIC};
 use crate::data::{Elements, Frame, Head, Note, Outline};
+use crate::elements::Before;
 use crate::error::{FilmError, expect, finite};
 use crate::number::{Width, push_planes};
 
@@ -44,6 +45,8 @@ struct Held {
     stage: Option<u32>,
     /// Outlines before, once others are kept back.
     shape: Option<Shape>,
+    /// Numbers of elements before, once others of the same outlines are kept back.
+    elements: Option<Before>,
 }
 
 impl FilmWriter {
@@ -105,6 +108,9 @@ impl FilmWriter {
         expect("frames before elements", usize::from(!self.numbers.is_empty()), 1)?;
         expect("meshes of elements", usize::from(self.shape.mesh.is_some()), 1)?;
         let Some(mesh) = &mut self.shape.mesh else { return Ok(()) };
+        if let Some(Held { shape: None, elements, .. }) = &mut self.held {
+            elements.get_or_insert_with(|| mesh.remembered());
+        }
         let bytes = mesh.frame(time, elements, &self.numbers)?;
         self.append(Kind::Elements, time, &bytes)
     }
@@ -157,8 +163,14 @@ impl FilmWriter {
 
     /// Keeps back what follows until [`FilmWriter::release`] writes it or [`FilmWriter::discard`] forgets it.
     pub fn hold(&mut self) {
-        self.held =
-            Some(Held { bytes: Vec::new(), before: self.rows.len(), rows: None, stage: self.stage, shape: None });
+        self.held = Some(Held {
+            bytes: Vec::new(),
+            before: self.rows.len(),
+            rows: None,
+            stage: self.stage,
+            shape: None,
+            elements: None,
+        });
     }
 
     /// Bytes that are kept back.
@@ -182,7 +194,9 @@ impl FilmWriter {
         if let Some(shape) = held.shape {
             self.shape = shape;
         }
-        self.forget_elements();
+        if let Some((mesh, before)) = self.shape.mesh.as_mut().zip(held.elements) {
+            mesh.recall(before);
+        }
         match held.rows {
             Some(rows) => self.rows = rows,
             None => self.rows.truncate(held.before),
@@ -198,15 +212,9 @@ impl FilmWriter {
         self.flush()?;
         (self.file, self.stage) = shorten(&self.path, until)?;
         self.numbers.clear();
-        self.forget_elements();
+        // Elements that follow stand for themselves: those before may not be in the film.
+        self.shape.mesh.iter_mut().for_each(|mesh| mesh.recall(None));
         Ok(())
-    }
-
-    /// Elements that follow stand for themselves: those before may not be in the film.
-    fn forget_elements(&mut self) {
-        if let Some(mesh) = &mut self.shape.mesh {
-            mesh.forget();
-        }
     }
 
     /// Writes the rows that are gathered.

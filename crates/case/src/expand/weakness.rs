@@ -7,7 +7,7 @@ use crate::{Case, PlaneOfWeakness, Side};
 /// Gives the planes of weakness of all rocks their angle.
 ///
 /// # Errors
-/// A plane without a direction, or with more than one.
+/// A plane without a direction, or with more than one; a value out of its range.
 pub fn expand(case: &mut Case) -> Check {
     let root = Key::root().field("rock");
     for (name, rock) in &mut case.rocks {
@@ -24,6 +24,7 @@ pub fn is_short(plane: &PlaneOfWeakness) -> bool {
 }
 
 fn angle(key: &Key, plane: &mut PlaneOfWeakness) -> Check {
+    plane.check(key)?;
     let angle = match (plane.angle_deg, plane.dip_deg, plane.dips) {
         (Some(angle), None, None) => angle,
         (None, Some(dip), Some(side)) => {

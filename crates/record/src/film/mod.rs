@@ -63,6 +63,8 @@ pub struct Film {
     meshes: Option<Meshes>,
     /// Frames since the last one with the numbers of elements, and its stage.
     since: Option<(u32, u32)>,
+    /// The same where what is kept back begins.
+    since_held: Option<(u32, u32)>,
 }
 
 /// Opening of a film beside the case and its model.
@@ -109,8 +111,8 @@ impl Film {
         let can_have_older = until.is_some() && simulation.model().breaking.is_some();
         let breaks = (!can_have_older).then(|| simulation.cuts().len());
         let (writer, page) = (writer.map_err(refused)?, directory.join(PAGE));
-        let (flow, since) = (Vec::new(), None);
-        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0, flow, meshes, since })
+        let (flow, since, since_held) = (Vec::new(), None, None);
+        Ok(Self { writer, path, page, numbers, corners, breaks, noted: 0, flow, meshes, since, since_held })
     }
 
     /// Appends the model as it is now.
@@ -286,6 +288,7 @@ impl Film {
 
     /// Keeps back what follows until it is released or discarded.
     pub fn hold(&mut self) {
+        self.since_held = self.since;
         self.writer.hold();
     }
 
@@ -306,7 +309,7 @@ impl Film {
     pub fn discard(&mut self) {
         self.forget_breaks();
         self.flow.clear();
-        self.since = None;
+        self.since = self.since_held;
         self.writer.discard();
     }
 

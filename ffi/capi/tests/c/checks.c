@@ -162,7 +162,7 @@ static void names(enmm_model *model)
         CHECK(enmm_name(model, kind, (uint32_t)count, name, sizeof name, &written) == ENMM_INVALID_ARGUMENT);
         CHECK(strstr(enmm_last_error(), "less than the number of") != NULL);
     }
-    CHECK(enmm_name_count(model, 10, &count) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_name_count(model, 11, &count) == ENMM_INVALID_ARGUMENT);
     CHECK(enmm_name(model, -1, 0, name, sizeof name, &written) == ENMM_INVALID_ARGUMENT);
     CHECK(enmm_name_count(model, ENMM_NAME_LAW, NULL) == ENMM_NULL_ARGUMENT);
     CHECK(enmm_name_count(NULL, ENMM_NAME_LAW, &count) == ENMM_NULL_ARGUMENT);

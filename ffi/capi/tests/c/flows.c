@@ -68,7 +68,7 @@ static void refuse(enmm_model *model)
     CHECK(enmm_set_head(NULL, 0, 1) == ENMM_NULL_ARGUMENT);
     CHECK(enmm_find_name(model, ENMM_NAME_HEAD, "crest", &index) == ENMM_NOT_FOUND && index == 7);
     CHECK(strstr(enmm_last_error(), "heel, toe"));
-    CHECK(enmm_find_name(model, 10, "heel", &index) == ENMM_INVALID_ARGUMENT);
+    CHECK(enmm_find_name(model, 11, "heel", &index) == ENMM_INVALID_ARGUMENT);
     CHECK(enmm_find_name(model, ENMM_NAME_HEAD, NULL, &index) == ENMM_NULL_ARGUMENT);
     CHECK(enmm_find_name(model, ENMM_NAME_HEAD, "toe", NULL) == ENMM_NULL_ARGUMENT);
     CHECK(enmm_get_inlet_state(model, ENMM_NAME_PORT, 0, &state) == ENMM_INVALID_ARGUMENT);
