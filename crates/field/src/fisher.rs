@@ -20,14 +20,14 @@ pub struct Fisher {
     /// Concentration κ = (n − 1)/(n − R), at most 1e6.
     pub kappa: f64,
     /// Half the angle (degrees) of the cone about the mean in which the true mean is with 95 % confidence; 180 where
-    /// too few poles tell nothing.
+    /// the poles are too few for a cone.
     pub cone_deg: f64,
 }
 
 impl Fisher {
     /// Mean and scatter of weighted poles: the mean is along the resultant R of the poles once each points to the side
     /// of the principal axis of them all. Weights count for R in proportion; n is their number for κ, and for the cone
-    /// the number (Σw)²/Σw² of equal ones that tell as much. None without poles.
+    /// the number (Σw)²/Σw² of equal ones with as much information. None without poles.
     pub fn of(poles: &[(Axis, f64)]) -> Option<Self> {
         let weight: f64 = poles.iter().map(|(_, weight)| weight).sum();
         if poles.is_empty() || weight <= 0.0 {

@@ -38,7 +38,7 @@ fn numbers_of_few_poles_are_those_of_the_hand() {
     let found = Fisher::of(&[(pole(60.0, 0.0), 1.0), (down(pole(120.0, 0.0)), 1.0)]).expect("poles");
     let r = 2.0 * 30f64.to_radians().cos();
     assert!((found.kappa - 1.0 / (2.0 - r)).abs() < 1e-12 && angle(found.mean, pole(90.0, 0.0)) < 1e-6);
-    // Here that is below −1: two such poles tell nothing. Of two poles 2° apart, R = 2·cos 1°.
+    // Here that is below −1: two such poles have no cone. Of two poles 2° apart, R = 2·cos 1°.
     assert_eq!(found.cone_deg, 180.0);
     let near = Fisher::of(&[(pole(0.0, 0.0), 1.0), (pole(2.0, 0.0), 1.0)]).expect("poles");
     let r = 2.0 * 1f64.to_radians().cos();

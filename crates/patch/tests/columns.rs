@@ -86,7 +86,7 @@ fn settled(stiffness: f64, corner: f64) -> World {
     world
 }
 
-/// The formula has the thrust between columns at their upper corners. Faces that have not leant yet bear it lower,
+/// The formula has the thrust between columns at their upper corners. Faces that have not leant yet have it lower,
 /// over some metres, and the slope finds a rest below the limit of the formula; forces of that rest are admissible,
 /// as they are down to tan φ = 0.66. A crest that has leant by 50 mm presses in the corners, and the limit is that of
 /// the formula, with corner springs of any length.

@@ -1,4 +1,4 @@
-//! Blocks at rest: they do not creep, shear springs return, wedges and stacks bear what equilibrium asks for.
+//! Blocks at rest: they do not creep, shear springs return, wedges and stacks carry the forces of equilibrium.
 
 use enmm_patch::{Hardening, Rule, Vector};
 

@@ -311,9 +311,11 @@ impl Recorder {
         let stage = simulation.state().stage;
         let beside = (start.sweeps_mean, &start.readings);
         let mut row = rows::row(stage, report, &start.monitors, &after, start.dt, beside, &tensions);
-        let columns = rows::columns(simulation.case());
-        let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
-        row.extend(earthquake::accelerations(simulation, &names, self.history.last(), &row));
+        if earthquake::is_shaken(simulation.case()) {
+            let columns = rows::columns(simulation.case());
+            let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+            row.extend(earthquake::accelerations(simulation, &names, self.history.last(), &row));
+        }
         self.history.row(&row)?;
         self.film.row(&row)
     }

@@ -88,23 +88,32 @@ fn show_trial(film: &mut Film, begun: &Begun, ended: &Simulation) -> io::Result<
     Ok(end.max(last))
 }
 
+/// Begins the film of a limit analysis, whose slider is the share of a motion of free size.
+fn film_of_motion(
+    directory: &Path,
+    loaded: &LoadedCase,
+    simulation: &Simulation,
+    file: &Unfinished,
+) -> io::Result<Film> {
+    let opening = Opening {
+        command: "bound",
+        film: file.path().to_owned(),
+        axis: Axis { name: "share of the motion".to_owned(), unit: String::new() },
+        numbers: MOTION.to_vec(),
+        elements: false,
+        columns: &[],
+    };
+    Film::open(directory, loaded, simulation, opening, None)
+}
+
 /// Writes the page of a limit analysis.
 ///
 /// # Errors
 /// A case that limit analysis refuses, as a message; else as the page of a factor of safety.
 pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) -> io::Result<()> {
     let (simulation, _) = limit_analysis::staged(&loaded.case).map_err(|invalid| io::Error::other(invalid.message))?;
-    let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening = Opening {
-        command: "bound",
-        film: unfinished.path().to_owned(),
-        axis,
-        numbers: MOTION.to_vec(),
-        elements: false,
-        columns: &[],
-    };
-    let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
+    let mut film = film_of_motion(directory, loaded, &simulation, &unfinished)?;
     let moving = &bound.level_tops.mechanism;
     let reach = SHOWN * greater_side(&simulation);
     for share in [0.0, 1.0] {
@@ -137,17 +146,8 @@ pub fn write_bound_page(directory: &Path, loaded: &LoadedCase, bound: &Bound) ->
 pub fn write_bracket_page(directory: &Path, loaded: &LoadedCase, bracket: &Bracket) -> io::Result<()> {
     let staged = limit_analysis::staged_rock(&loaded.case);
     let (mut simulation, _) = staged.map_err(|invalid| io::Error::other(invalid.message))?;
-    let axis = Axis { name: "share of the motion".to_owned(), unit: String::new() };
     let (unfinished, _) = Unfinished::beside(&directory.join(FILM))?;
-    let opening = Opening {
-        command: "bound",
-        film: unfinished.path().to_owned(),
-        axis,
-        numbers: MOTION.to_vec(),
-        elements: false,
-        columns: &[],
-    };
-    let mut film = Film::open(directory, loaded, &simulation, opening, None)?;
+    let mut film = film_of_motion(directory, loaded, &simulation, &unfinished)?;
     film.frame_at(&simulation, 0.0)?;
     let reach = SHOWN * greater_side(&simulation);
     move_by(&mut simulation, bracket, reach);

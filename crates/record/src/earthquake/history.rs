@@ -15,7 +15,7 @@ use super::seismogram::{Place, Seismogram, base_motion};
 const AXES: [(Axis, &str); 2] = [(Axis::X, "x"), (Axis::Y, "y")];
 
 /// Whether a ground motion acts in any stage of a case.
-fn is_shaken(case: &Case) -> bool {
+pub fn is_shaken(case: &Case) -> bool {
     (0..case.stages.len()).any(|stage| case.is_shaken(stage))
 }
 
@@ -27,10 +27,10 @@ pub fn columns(case: &Case) -> Vec<(String, &'static str)> {
 }
 
 /// Mean accelerations (m/s²) of monitors since the last row, by the velocities of both and of the base; 0 in the first
-/// row. The values of [`columns`]; `names` are those of the columns of the row.
+/// row. The values of [`columns`] of a case that is shaken; `names` are those of the columns of the row.
 pub fn accelerations(simulation: &Simulation, names: &[&str], last: Option<&[f64]>, row: &[f64]) -> Vec<f64> {
     let case = simulation.case();
-    let Some(last) = last.filter(|last| is_shaken(case) && row[0] > last[0]) else {
+    let Some(last) = last.filter(|last| row[0] > last[0]) else {
         return vec![0.0; columns(case).len()];
     };
     let starts = &simulation.state().stage_starts;

@@ -16,7 +16,7 @@ use enmm_seismology::{DAMPING, periods};
 pub use seismogram::{Place, Seismogram, records};
 
 pub(crate) use files::{clear, draw, write};
-pub(crate) use history::{accelerations, columns};
+pub(crate) use history::{accelerations, columns, is_shaken};
 
 /// Longest time (s) between rows of a stage that a ground motion shakes, where the case names none: that of
 /// accelerographs with 200 samples in a second.

@@ -125,7 +125,7 @@ pub struct YieldAcceleration {
     pub end: End,
     /// The coefficient at which the factor of limit analysis is 1, an upper bound, or why there is none.
     pub bound: Result<f64, String>,
-    /// The search at F = 1 with the least coefficient that the slope did not bear, for its mechanism.
+    /// The search at F = 1 with the least coefficient at which the slope did not stand, for its mechanism.
     pub failing: Option<Box<Reduction>>,
 }
 
@@ -250,10 +250,10 @@ pub fn with_acceleration(case: &Case, along_x: f64) -> Case {
     case
 }
 
-/// The coefficient at which the factor of limit analysis is 1, by halvings between coefficients that it bears and does
-/// not bear.
+/// The coefficient at which the factor of limit analysis is 1, by halvings between coefficients at which it is above
+/// and below 1.
 fn bounded(shaken: &dyn Fn(f64) -> Case) -> Result<f64, String> {
-    let bears = |coefficient: f64| {
+    let holds = |coefficient: f64| {
         let bound = limit_analysis::bound(&shaken(coefficient)).map_err(|error| error.to_string())?;
         let factor = bound.level_tops.factor;
         match factor.found() {
@@ -262,12 +262,12 @@ fn bounded(shaken: &dyn Fn(f64) -> Case) -> Result<f64, String> {
         }
     };
     let [least, most] = COEFFICIENT_RANGE;
-    if !bears(least)? {
+    if !holds(least)? {
         return Err(format!("it is below {least}"));
     }
     let mut low = least;
     let mut high = FIRST[0];
-    while bears(high)? {
+    while holds(high)? {
         low = high;
         if high >= most {
             return Err(format!("it is above {most}"));
@@ -276,7 +276,7 @@ fn bounded(shaken: &dyn Fn(f64) -> Case) -> Result<f64, String> {
     }
     while high / low - 1.0 > CLOSE {
         let middle = 0.5 * (low + high);
-        if bears(middle)? { low = middle } else { high = middle }
+        if holds(middle)? { low = middle } else { high = middle }
     }
     Ok(0.5 * (low + high))
 }
